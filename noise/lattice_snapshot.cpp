@@ -1,0 +1,222 @@
+#include "noise/lattice_snapshot.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "noise/portable_math.h"
+
+namespace eikonal {
+namespace {
+
+constexpr int kAliases = 6;  ///< on each side; the weight of the next is below 1e-6 of the error
+
+/// Relative weights of mode and aliases in the spline: calls action(m, weight), Σ weight = 1.
+template <class Action>
+void for_each_alias(double turns, Action&& action) {
+    const auto weight = [&](int m) { return 1 / ((turns + m) * (turns + m) * (turns + m) * (turns + m)); };
+    double sum = 0;
+    for (int m = -kAliases; m <= kAliases; ++m) sum += weight(m);
+    for (int m = -kAliases; m <= kAliases; ++m) action(m, weight(m) / sum);
+}
+
+/// Where a bin of a coarse axis goes in the finer one.
+struct Targets {
+    int count;
+    std::array<int, 2> bin;
+    float factor;
+};
+Targets targets(int i, int n, int finer) {
+    const int m = signed_index(i, n);
+    if (is_nyquist(i, n) && finer > n) return {2, {m, finer - m}, 0.5F};
+    return {1, {m < 0 ? m + finer : m, 0}, 1.0F};
+}
+
+/// The cubic B-spline's four weights at fraction f of a cell, and their derivatives.
+struct Basis {
+    std::array<double, 4> w, d;
+    std::array<std::size_t, 4> at;
+
+    Basis(double x, int n, std::size_t stride) {
+        const double cells = (x - std::floor(x)) * n;
+        const int i = std::min(static_cast<int>(cells), n - 1);
+        const double f = cells - i, g = 1 - f;
+        w = {g * g * g / 6, (4 + f * f * (3 * f - 6)) / 6, (4 + g * g * (3 * g - 6)) / 6, f * f * f / 6};
+        d = {-0.5 * g * g * n, 0.5 * f * (3 * f - 4) * n, -0.5 * g * (3 * g - 4) * n, 0.5 * f * f * n};
+        for (int k = 0; k < 4; ++k) at[k] = static_cast<std::size_t>((i + k - 1 + n) % n) * stride;
+    }
+};
+
+std::array<int, 3> spatial_size(const LatticeGeometry& g) {
+    return {g.size[0], g.size[1], g.size[2]};
+}
+
+}  // namespace
+
+double spline_transfer(double turns) {
+    double s, c;
+    portable::sincos_turns(turns, s, c);
+    return (2 + c) / 3;
+}
+
+double spline_error(double turns) {
+    if (turns == 0) return 0;
+    double sum = 0;
+    for_each_alias(turns, [&](int m, double w) { sum += m == 0 ? (1 - w) * (1 - w) : w * w; });
+    return std::sqrt(sum);
+}
+
+double spline_slope_error(double turns) {
+    if (turns == 0) return 0;
+    double sum = 0;
+    for_each_alias(turns, [&](int m, double w) {
+        const double slope = m == 0 ? 1 - w : w * (turns + m) / turns;
+        sum += slope * slope;
+    });
+    return std::sqrt(sum);
+}
+
+FftVector<complex32> pad_spectrum(const FftVector<complex32>& spectrum, const std::array<int, 3>& size,
+                                  const std::array<int, 3>& finer) {
+    if (finer == size) return spectrum;
+    const auto half = static_cast<std::size_t>(size[2] / 2 + 1),
+               finer_half = static_cast<std::size_t>(finer[2] / 2 + 1);
+    const auto at = [&](int x, int y) {
+        return static_cast<std::size_t>(x) * static_cast<std::size_t>(finer[1]) + static_cast<std::size_t>(y);
+    };
+    FftVector<complex32> out(at(finer[0], 0) * finer_half);
+    const bool split = is_nyquist(size[2] / 2, size[2]) && finer[2] > size[2];
+    for (int ix = 0; ix < size[0]; ++ix) {
+        const Targets tx = targets(ix, size[0], finer[0]);
+        for (int iy = 0; iy < size[1]; ++iy) {
+            const Targets ty = targets(iy, size[1], finer[1]);
+            const complex32* from =
+                spectrum.data() +
+                (static_cast<std::size_t>(ix) * static_cast<std::size_t>(size[1]) + static_cast<std::size_t>(iy)) *
+                    half;
+            const float factor = tx.factor * ty.factor;
+            for (int a = 0; a < tx.count; ++a)
+                for (int b = 0; b < ty.count; ++b) {
+                    complex32* to = out.data() + at(tx.bin[a], ty.bin[b]) * finer_half;
+                    for (std::size_t z = 0; z < half; ++z) to[z] = from[z] * factor;
+                    if (split) to[half - 1] *= 0.5F;
+                }
+        }
+    }
+    return out;
+}
+
+PeriodicSpline3::PeriodicSpline3(FftVector<complex32> spectrum, const std::array<int, 3>& size, int padding)
+    : size_{size[0] * padding, size[1] * padding, size[2] * padding} {
+    spectrum = pad_spectrum(spectrum, size, size_);
+    std::array<std::vector<float>, 3> inverse;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < size_[axis]; ++i)
+            inverse[axis].push_back(static_cast<float>(1 / spline_transfer(static_cast<double>(i) / size_[axis])));
+    const auto half = static_cast<std::size_t>(size_[2] / 2 + 1);
+    tbb::parallel_for(0, size_[0], [&](int ix) {
+        complex32* row = spectrum.data() + static_cast<std::size_t>(ix) * static_cast<std::size_t>(size_[1]) * half;
+        for (int iy = 0; iy < size_[1]; ++iy, row += half) {
+            const float xy = inverse[0][static_cast<std::size_t>(ix)] * inverse[1][static_cast<std::size_t>(iy)];
+            for (std::size_t z = 0; z < half; ++z) row[z] *= xy * inverse[2][z];
+        }
+    });
+    const FftPlan plan(FftPlan::Kind::ComplexToReal, size_);
+    coefficients_.resize(plan.sample_size());
+    plan.execute(spectrum.data(), coefficients_.data());
+    const auto [least, most] = std::minmax_element(coefficients_.begin(), coefficients_.end());
+    lower_ = *least;
+    upper_ = *most;
+}
+
+PeriodicSpline3::Sample PeriodicSpline3::sample(const dvec3& x) const {
+    const auto nz = static_cast<std::size_t>(size_[2]);
+    const Basis bx(x.x, size_[0], static_cast<std::size_t>(size_[1]) * nz), by(x.y, size_[1], nz), bz(x.z, size_[2], 1);
+    Sample out{0, {0, 0, 0}};
+    for (int i = 0; i < 4; ++i) {
+        double value = 0, slope_y = 0, slope_z = 0;
+        for (int j = 0; j < 4; ++j) {
+            const float* row = coefficients_.data() + bx.at[i] + by.at[j];
+            double v = 0, s = 0;
+            for (int k = 0; k < 4; ++k) {
+                const double c = row[bz.at[k]];
+                v += bz.w[k] * c;
+                s += bz.d[k] * c;
+            }
+            value += by.w[j] * v;
+            slope_y += by.d[j] * v;
+            slope_z += by.w[j] * s;
+        }
+        out.value += bx.w[i] * value;
+        out.gradient.x += bx.d[i] * value;
+        out.gradient.y += bx.w[i] * slope_y;
+        out.gradient.z += bx.w[i] * slope_z;
+    }
+    return out;
+}
+
+IndexSample falloff_at(const Falloff& falloff, const dvec3& x) {
+    const dvec3 d = x - falloff.origin;
+    const double h = d.x * falloff.normal.x + d.y * falloff.normal.y + d.z * falloff.normal.z;
+    if (!(h > 0)) return {1, {0, 0, 0}};
+    const double g = portable::exp(-h / falloff.length);
+    return {g, falloff.normal * (-g / falloff.length)};
+}
+
+LatticeSnapshot::LatticeSnapshot(const LatticeField& field, double t, int padding)
+    : period_{field.geometry().period[0], field.geometry().period[1], field.geometry().period[2]},
+      falloff_(field.spec().falloff),
+      spline_(field.spectrum_at(t), spatial_size(field.geometry()), padding) {}
+
+IndexSample LatticeSnapshot::sample(const dvec3& x) const {
+    const PeriodicSpline3::Sample s = spline_.sample({x.x / period_[0], x.y / period_[1], x.z / period_[2]});
+    const dvec3 gradient(s.gradient.x / period_[0], s.gradient.y / period_[1], s.gradient.z / period_[2]);
+    if (!falloff_) return {s.value, gradient};
+    const IndexSample g = falloff_at(*falloff_, x);
+    return {s.value * g.n, gradient * g.n + g.gradient * s.value};
+}
+
+FftVector<float> node_field(const LatticeField& field, double t, Component what) {
+    const LatticeGeometry& g = field.geometry();
+    const auto half = static_cast<std::size_t>(g.half());
+    const FftVector<complex32> spectrum = field.spectrum_at(t);
+    const FftPlan plan(FftPlan::Kind::ComplexToReal, spatial_size(g));
+    const auto transform = [&](Component component) {
+        FftVector<complex32> modes = spectrum;
+        if (component != Component::Index) {
+            const int axis = static_cast<int>(component) - static_cast<int>(Component::ForceX);
+            for (std::size_t r = 0; r < modes.size(); ++r) {
+                const auto z = static_cast<int>(r % half),
+                           y = static_cast<int>(r / half % static_cast<std::size_t>(g.size[1]));
+                const auto x = static_cast<int>(r / half / static_cast<std::size_t>(g.size[1]));
+                const int bin = axis == 0 ? x : (axis == 1 ? y : z);
+                const auto k = static_cast<float>(derivative_wavenumber(bin, g.size[axis], g.period[axis]));
+                modes[r] = {-k * modes[r].imag(), k * modes[r].real()};
+            }
+        }
+        FftVector<float> samples(plan.sample_size());
+        plan.execute(modes.data(), samples.data());
+        return samples;
+    };
+    FftVector<float> out = transform(what);
+    if (!field.spec().falloff) return out;
+    const FftVector<float> index = what == Component::Index ? FftVector<float>() : transform(Component::Index);
+    tbb::parallel_for(0, g.size[0], [&](int ix) {
+        auto at =
+            static_cast<std::size_t>(ix) * static_cast<std::size_t>(g.size[1]) * static_cast<std::size_t>(g.size[2]);
+        for (int iy = 0; iy < g.size[1]; ++iy)
+            for (int iz = 0; iz < g.size[2]; ++iz, ++at) {
+                const IndexSample f =
+                    falloff_at(*field.spec().falloff, {ix * g.spacing(0), iy * g.spacing(1), iz * g.spacing(2)});
+                double value = out[at] * f.n;
+                if (what != Component::Index)
+                    value += index[at] * f.gradient[static_cast<int>(what) - static_cast<int>(Component::ForceX)];
+                out[at] = static_cast<float>(value);
+            }
+    });
+    return out;
+}
+
+}  // namespace eikonal

@@ -1,0 +1,101 @@
+/// Parameters of every medium that a scene may hold: plain data, as the scene file states them, SI units.
+/// Defaults are those of an omitted key. What a medium does with them is in the header named at each struct.
+///
+/// Conventions: metres, seconds, kelvin; world axes right-handed, y up. "Index" is always n - n_ambient.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace eikonal {
+
+using glm::dvec3;
+
+enum class SpectrumKind { VonKarman, Paper };
+enum class TurbulenceForm { Lattice, Screens, GradientNoise };
+
+/// Strength falls as exp(-h/length) with height h = (x - origin) . normal, and is 1 for h <= 0 (PHYSICS 5, Fig. 6).
+struct Falloff {
+    dvec3 origin{0, 0, 0};
+    dvec3 normal{0, 1, 0};  ///< normalised by the reader
+    double length = 1;      ///< [m] > 0
+};
+
+/// [[medium]] type="turbulence". noise/lattice.h, noise/screens.h, noise/gradient_noise.h
+struct TurbulenceSpec {
+    std::uint64_t seed = 1;
+    SpectrumKind spectrum = SpectrumKind::VonKarman;
+    double cn2 = 1e-13;               ///< Cn² [m^-2/3] >= 0 (von Kármán)
+    double outer_scale = 1.0;         ///< L0 [m] > inner_scale
+    double inner_scale = 0.005;       ///< l0 [m] > 0
+    double strength = 1e-12;          ///< C of S(k) = C k^(-11/3), <n'²> = ∫ S d³k (paper) >= 0
+    double lowest_wavenumber = 2;     ///< k_m, cycles per lattice period (paper) >= 0
+    double alpha = 0.01;              ///< [m²/s²] >= 0; 0 is frozen
+    dvec3 velocity{0, 0, 0};          ///< mean motion [m/s]
+    TurbulenceForm form = TurbulenceForm::Screens;
+    std::optional<Falloff> falloff;
+    std::optional<std::array<int, 4>> lattice;    ///< nx, ny, nz, nt; left out: chosen from camera, depth and scales
+    std::optional<std::array<double, 4>> period;  ///< Lx, Ly, Lz [m], T [s]; left out: likewise
+};
+
+/// [[medium]] type="surface": T = Ta + (TS - Ta) exp(-(x - origin).normal / dropoff) (PHYSICS 3)
+struct SurfaceSpec {
+    dvec3 origin{0, 0, 0};
+    dvec3 normal{0, 1, 0};
+    double surface_temperature = 305;  ///< TS [K] > 0
+    double dropoff = 0.01;             ///< d0 [m] > 0
+};
+
+/// One explicit hot blob.
+struct BlobSpec {
+    dvec3 center{0, 0, 0};
+    double sigma = 0.1;        ///< [m] > 0
+    double temperature = 1000;  ///< [K] > 0
+};
+
+/// Emits blobs along the segment from..to.
+struct BlobSourceSpec {
+    dvec3 from{0, 0, 0}, to{0, 0, 0};
+    double rate = 10;           ///< blobs a second >= 0
+    double temperature = 1000;  ///< at birth [K] > 0
+    double sigma = 0.1;         ///< [m] > 0
+    double cooling = 1;         ///< 1/s >= 0
+    double lifetime = 5;        ///< [s] > 0
+};
+
+/// The turbulent wind that carries blobs.
+struct WindSpec {
+    std::uint64_t seed = 1;
+    double rms = 0.5;          ///< of each velocity component [m/s] >= 0
+    double outer_scale = 1;    ///< [m] > 0
+    dvec3 rise{0, 1, 0};       ///< mean velocity [m/s]
+};
+
+/// [[medium]] type="blobs" (PHYSICS 4)
+struct BlobsSpec {
+    std::vector<BlobSpec> blobs;
+    std::vector<BlobSourceSpec> sources;
+    std::optional<WindSpec> wind;
+};
+
+enum class ProfileKind { Luneburg, FishEye, Linear, LinearSquared, Exponential, Rod, Sech };
+
+/// [[medium]] type="profile": absolute index in closed form, used alone, for validation.
+struct ProfileSpec {
+    ProfileKind profile = ProfileKind::Luneburg;
+    dvec3 center{0, 0, 0};
+    dvec3 axis{0, 1, 0};
+    double radius = 1;  ///< [m] > 0
+    double n0 = 1;      ///< > 0
+    double slope = 0;   ///< per metre
+    double g = 1;       ///< 1/m
+};
+
+using MediumSpec = std::variant<TurbulenceSpec, SurfaceSpec, BlobsSpec, ProfileSpec>;
+
+}  // namespace eikonal

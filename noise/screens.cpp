@@ -1,0 +1,99 @@
+#include "noise/screens.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "noise/portable_math.h"
+
+namespace eikonal {
+
+PeriodicSpline2::Sample ScreenSnapshot::sample(double x, double y) const {
+    PeriodicSpline2::Sample sum;
+    for (const auto& band : bands_) {
+        const PeriodicSpline2::Sample s = band->sample(x - drift_x_, y - drift_y_);
+        sum.value += s.value;
+        sum.dx += s.dx;
+        sum.dy += s.dy;
+    }
+    return sum;
+}
+
+void ScreenSnapshot::add_gradients(double x0, double y0, double step_x, double step_y, int n, float weight,
+                                   float* uv) const {
+    for (const auto& band : bands_) band->add_gradients(x0 - drift_x_, y0 - drift_y_, step_x, step_y, n, weight, uv);
+}
+
+void ScreenSnapshot::add_values(double x0, double y0, double step_x, double step_y, int n, float weight,
+                                float* values) const {
+    for (const auto& band : bands_) band->add_values(x0 - drift_x_, y0 - drift_y_, step_x, step_y, n, weight, values);
+}
+
+ScreenField::ScreenField(const TurbulenceSpec& spec, std::vector<ScreenGeometry> screens, const dvec3& e1,
+                         const dvec3& e2)
+    : screens_(std::move(screens)), velocity_x_(glm::dot(spec.velocity, e1)), velocity_y_(glm::dot(spec.velocity, e2)) {
+    constexpr std::uint64_t kBandsPerScreen = 256;
+    for (std::size_t m = 0; m < screens_.size(); ++m) {
+        const Spectrum spectrum(spec, spec.lowest_wavenumber * portable::kTwoPi / screens_[m].Lx);
+        std::vector<ScreenBand>& bands = bands_.emplace_back();
+        for (const BandGeometry& g : screen_bands(spec, screens_[m]))
+            bands.emplace_back(spec, spectrum, g, m * kBandsPerScreen + bands.size());
+    }
+}
+
+std::vector<ScreenSnapshot> ScreenField::at(double t) const {
+    std::vector<ScreenSnapshot> out(screens_.size());
+    std::vector<std::pair<std::size_t, std::size_t>> jobs;
+    for (std::size_t m = 0; m < screens_.size(); ++m) {
+        const ScreenGeometry& g = screens_[m];
+        out[m].w_ = g.w;
+        out[m].thickness_ = g.thickness;
+        out[m].cell_ = std::min(g.Lx / g.nx, g.Ly / g.ny);
+        out[m].drift_x_ = velocity_x_ * t;
+        out[m].drift_y_ = velocity_y_ * t;
+        out[m].bands_.resize(bands_[m].size());
+        for (std::size_t b = 0; b < bands_[m].size(); ++b) jobs.emplace_back(m, b);
+    }
+    tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+        const auto [m, b] = jobs[i];
+        out[m].bands_[b] = bands_[m][b].at(t);
+    });
+    return out;
+}
+
+double ScreenField::gradient_variance(std::size_t screen) const {
+    double sum = 0;
+    for (const ScreenBand& band : bands_[screen]) sum += 0.5 * (band.slope_variance_x() + band.slope_variance_y());
+    return sum;
+}
+
+double ScreenField::displacement_angle_variance(double D) const {
+    double sum = 0;
+    for (std::size_t m = 0; m < screens_.size(); ++m) {
+        const double weight = 1 - screens_[m].w / D;
+        if (weight > 0) sum += weight * weight * gradient_variance(m);
+    }
+    return sum;
+}
+
+double ScreenField::arrival_angle_variance() const {
+    double sum = 0;
+    for (std::size_t m = 0; m < screens_.size(); ++m) sum += gradient_variance(m);
+    return sum;
+}
+
+double ScreenField::focusing_variance(double D, bool perspective) const {
+    double sum = 0;
+    for (std::size_t m = 0; m < screens_.size(); ++m) {
+        const double weight = (1 - screens_[m].w / D) * (perspective ? screens_[m].w : D);
+        if (screens_[m].w >= D) continue;
+        double curvature = 0;
+        for (const ScreenBand& band : bands_[m]) curvature += band.curvature_variance();
+        sum += weight * weight * curvature;
+    }
+    return sum;
+}
+
+}  // namespace eikonal

@@ -1,0 +1,74 @@
+/// Thin screens for long paths (PHYSICS 6, *added*): slabs of air thicker than L0, each a plane of random optical path
+/// ψ(x, y) = ∫ n dw [m] through the slab, of 2-D spectrum 2πδ Φ_n(k⊥, kz = 0), drifting and evolving.
+///
+///     angle(θ; D) = Σ_m (1 - w_m/D) ∇⊥ψ_m(w_m θ),   w_m < D        (perspective; the sum is the caller's)
+///
+/// x, y [m] are lateral coordinates on a screen along the axes e1, e2 given at construction, zero on the axis of the
+/// shot; screens are fixed in the world. Each is a sum of lattices (screen_bands of noise/screen_layout.h,
+/// noise/screen_band.h), made by one transform each; the gradient is that of the spline through them.
+///
+/// Mean velocity: its components along e1 and e2 carry the whole pattern, an exact shift of the sample position at any
+/// t. The component along the axis does not move screens (it would only exchange the air in a slab for air of the same
+/// statistics, which evolution does). With a velocity the loop over T closes only if v T is a whole number of periods.
+/// Falloff is not applied: multiply by the strength g at the point where a ray meets the screen (and add ψ∇g).
+/// The ray equation's factor (½ in the paper's) and exaggeration are the caller's too.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "noise/screen_layout.h"
+
+namespace eikonal {
+
+/// One screen at one instant. Cheap to copy, immutable, thread-safe.
+class ScreenSnapshot {
+  public:
+    double w() const { return w_; }                  ///< [m]
+    double thickness() const { return thickness_; }  ///< δ [m]
+    double cell() const { return cell_; }            ///< of the finest lattice [m]
+
+    /// ψ [m] and ∇ψ [rad] at any finite position.
+    PeriodicSpline2::Sample sample(double x, double y) const;
+    /// As PeriodicSpline2's: uv interleaved += weight ∇ψ; values += weight ψ.
+    void add_gradients(double x0, double y0, double step_x, double step_y, int n, float weight, float* uv) const;
+    void add_values(double x0, double y0, double step_x, double step_y, int n, float weight, float* values) const;
+
+  private:
+    friend class ScreenField;
+    double w_ = 0, thickness_ = 0, cell_ = 0, drift_x_ = 0, drift_y_ = 0;
+    std::vector<std::shared_ptr<const PeriodicSpline2>> bands_;
+};
+
+/// All screens of a medium. Immutable, thread-safe.
+class ScreenField {
+  public:
+    /// screens: as layout_screens gives them; check_screens first. e1, e2: unit vectors of the lateral axes.
+    ScreenField(const TurbulenceSpec& spec, std::vector<ScreenGeometry> screens, const dvec3& e1, const dvec3& e2);
+
+    /// Every screen at time t [s], any finite; costs the same for every t. Same bits for any number of threads.
+    std::vector<ScreenSnapshot> at(double t) const;
+
+    const std::vector<ScreenGeometry>& screens() const { return screens_; }
+
+    /// Discrete expectations (of the lattices, not the continuum), single axis [rad²]. Var ∂ψ of one screen:
+    double gradient_variance(std::size_t screen) const;
+    /// Σ (1 - w/D)² var_m over w_m < D: the angle that an object at D seems displaced by. Continuum for a point
+    /// aperture and large L0: 1.093 Cn² D l0^(-1/3).
+    double displacement_angle_variance(double D) const;
+    /// Σ var_m: angle of arrival of parallel rays. Continuum: 3.28 Cn² L l0^(-1/3).
+    double arrival_angle_variance() const;
+    /// Variance of ∂/∂x of the map's displacement at D: Σ (1 - w/D)² s² <(∂²ψ/∂x²)²> with s = w seen in perspective,
+    /// and s = D for parallel rays. Near 1 rays fold and first order fails. Continuum: 0.479 Cn² D³ l0^(-7/3) in
+    /// perspective, ten times that for parallel rays. Curvature lives at the inner scale: cells coarser than l0/3 do
+    /// not see, and so do not count, all of it.
+    double focusing_variance(double D, bool perspective = true) const;
+
+  private:
+    std::vector<ScreenGeometry> screens_;
+    std::vector<std::vector<ScreenBand>> bands_;
+    double velocity_x_, velocity_y_;
+};
+
+}  // namespace eikonal

@@ -1,0 +1,138 @@
+#include "reference/mesh.h"
+
+#include <fmt/format.h>
+#define TINYOBJLOADER_USE_DOUBLE
+#include <tiny_obj_loader.h>
+
+#include <cmath>
+#include <fstream>
+#include <glm/geometric.hpp>
+
+#include "noise/error.h"
+
+namespace eikonal::reference {
+namespace {
+
+/// Reads material libraries and remembers what it could not open, where tinyobjloader would only warn.
+class MaterialReader : public tinyobj::MaterialReader {
+  public:
+    explicit MaterialReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                    std::map<std::string, int>* index, std::string* warnings, std::string* errors) override {
+        std::ifstream stream(folder_ / name);
+        if (!stream) {
+            missing_ = folder_ / name;
+            return false;
+        }
+        tinyobj::LoadMtl(index, materials, &stream, warnings, errors);
+        return true;
+    }
+
+    const std::optional<std::filesystem::path>& missing() const { return missing_; }
+
+  private:
+    std::filesystem::path folder_;
+    std::optional<std::filesystem::path> missing_;
+};
+
+std::string first_line(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
+
+bool finite(dvec3 p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+dvec3 vector_at(const std::vector<double>& values, std::size_t i) {
+    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
+
+/// Copies a list of triples; UserError if one is not finite.
+std::vector<dvec3> vectors(const std::vector<double>& values, const char* what, const std::filesystem::path& file) {
+    std::vector<dvec3> result(values.size() / 3);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        result[i] = vector_at(values, i);
+        if (!finite(result[i]))
+            throw UserError(fmt::format("{}: {} {} is not finite: repair the mesh", file.string(), what, i + 1));
+    }
+    return result;
+}
+
+bool has_area(const Mesh& mesh, const Mesh::Triangle& t) {
+    const dvec3 a = mesh.positions[t.vertex[0]], b = mesh.positions[t.vertex[1]], c = mesh.positions[t.vertex[2]];
+    const dvec3 n = glm::cross(b - a, c - a);
+    return glm::dot(n, n) > 0;
+}
+
+}  // namespace
+
+Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset) {
+    std::ifstream stream(file);
+    if (!stream || std::filesystem::is_directory(file))
+        throw UserError(fmt::format("cannot read the mesh {}: give an existing .obj file", file.string()));
+    tinyobj::attrib_t attrib;
+    std::vector<tinyobj::shape_t> shapes;
+    std::vector<tinyobj::material_t> materials;
+    std::string warnings, errors;
+    MaterialReader material_reader(file.parent_path());
+    const bool ok = tinyobj::LoadObj(&attrib, &shapes, &materials, &warnings, &errors, &stream, &material_reader);
+    if (material_reader.missing())
+        throw UserError(fmt::format("{}: cannot read its material library {}: put it there or remove its mtllib line",
+                                    file.string(), material_reader.missing()->string()));
+    if (!ok) throw UserError(fmt::format("{}: not a valid OBJ file: {}", file.string(), first_line(errors)));
+
+    Mesh mesh;
+    mesh.positions = vectors(attrib.vertices, "vertex", file);
+    for (dvec3& p : mesh.positions) p = offset + scale * p;
+    mesh.colors = vectors(attrib.colors, "vertex colour", file);
+    mesh.colors.resize(mesh.positions.size(), dvec3(1));
+    mesh.normals = vectors(attrib.normals, "normal", file);
+    mesh.uvs.resize(attrib.texcoords.size() / 2);
+    for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+        mesh.uvs[i] = {attrib.texcoords[2 * i], attrib.texcoords[2 * i + 1]};
+        if (!finite({mesh.uvs[i], 0}))
+            throw UserError(
+                fmt::format("{}: texture coordinate {} is not finite: repair the mesh", file.string(), i + 1));
+    }
+    for (const tinyobj::material_t& m : materials) {
+        MeshMaterial material{
+            {m.diffuse[0], m.diffuse[1], m.diffuse[2]}, {m.emission[0], m.emission[1], m.emission[2]}, {}};
+        if (!m.diffuse_texname.empty()) material.texture = file.parent_path() / m.diffuse_texname;
+        mesh.materials.push_back(std::move(material));
+    }
+    const auto checked = [&](int index, std::size_t count, int lowest) {
+        if (index < lowest || (index >= 0 && static_cast<std::size_t>(index) >= count))
+            throw UserError(fmt::format("{}: a face refers to entry {} of a list of {}: repair the mesh", file.string(),
+                                        static_cast<long long>(index) + 1, count));
+        return index;
+    };
+    for (const tinyobj::shape_t& shape : shapes) {
+        const tinyobj::mesh_t& m = shape.mesh;
+        for (std::size_t i = 0; 3 * i + 2 < m.indices.size(); ++i) {
+            Mesh::Triangle t{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const tinyobj::index_t& corner = m.indices[3 * i + k];
+                t.vertex[k] = static_cast<std::uint32_t>(checked(corner.vertex_index, mesh.positions.size(), 0));
+                t.normal[k] = checked(corner.normal_index, mesh.normals.size(), -1);
+                t.uv[k] = checked(corner.texcoord_index, mesh.uvs.size(), -1);
+            }
+            t.material = checked(m.material_ids[i], mesh.materials.size(), -1);
+            if (has_area(mesh, t)) mesh.triangles.push_back(t);
+        }
+    }
+    if (mesh.triangles.empty())
+        throw UserError(fmt::format("{}: the mesh has no triangle with an area: nothing to render", file.string()));
+    return mesh;
+}
+
+Mesh make_quad(dvec3 c0, dvec3 u, dvec3 v) {
+    Mesh mesh;
+    mesh.positions = {c0, c0 + u, c0 + u + v, c0 + v};
+    mesh.colors.assign(4, dvec3(1));
+    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.triangles = {{{0, 1, 2}, {-1, -1, -1}, {0, 1, 2}, -1}, {{0, 2, 3}, {-1, -1, -1}, {0, 2, 3}, -1}};
+    return mesh;
+}
+
+}  // namespace eikonal::reference

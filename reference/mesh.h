@@ -1,0 +1,53 @@
+/// Triangle meshes from Wavefront OBJ files with their MTL materials.
+///
+/// What is read: v (with optional r g b, a vertex colour that multiplies the material's), vt, vn, f (polygons are
+/// triangulated), mtllib, usemtl; of a material Kd, Ke and map_Kd. Everything else is ignored. Colours are linear.
+/// Coordinates are metres after `scale` and `offset`. Triangles without area are left out.
+///
+/// Failures: UserError naming the file, for a mesh or material library that is missing, unreadable, has no triangles,
+/// indices outside its lists, or coordinates that are not finite.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+namespace eikonal::reference {
+
+using glm::dvec2;
+using glm::dvec3;
+
+/// A material as its file states it.
+struct MeshMaterial {
+    dvec3 diffuse{0.5, 0.5, 0.5};                  ///< Kd, linear; multiplies the texture
+    dvec3 emission{0, 0, 0};                       ///< Ke, linear, radiance
+    std::optional<std::filesystem::path> texture;  ///< map_Kd, resolved against the folder of its file
+};
+
+/// Indexed triangles. The three lists of `normals` and `uvs` may be empty.
+struct Mesh {
+    struct Triangle {
+        std::array<std::uint32_t, 3> vertex;  ///< into positions and colors
+        std::array<std::int32_t, 3> normal;   ///< into normals; -1: none at this corner
+        std::array<std::int32_t, 3> uv;       ///< into uvs; -1: none
+        std::int32_t material = -1;           ///< into materials; -1: that of the object
+    };
+    std::vector<dvec3> positions;  ///< [m], world
+    std::vector<dvec3> colors;     ///< per position; 1 where the file has none
+    std::vector<dvec3> normals;    ///< as the file has them, not normalised
+    std::vector<dvec2> uvs;        ///< v up
+    std::vector<Triangle> triangles;
+    std::vector<MeshMaterial> materials;
+};
+
+/// Reads `file`; a position p of the file becomes offset + scale p.
+Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset);
+
+/// A rectangle as two triangles: corner c0 has uv (0, 0), c0 + u (1, 0), c0 + u + v (1, 1); its normal is u x v.
+Mesh make_quad(dvec3 c0, dvec3 u, dvec3 v);
+
+}  // namespace eikonal::reference

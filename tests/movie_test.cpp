@@ -1,0 +1,571 @@
+// Movies in and out: codes kept, streams kept, clear errors. Sources are made by the ffmpeg program in a temporary
+// folder.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "noise/error.h"
+#include "warp/image/movie_frame.h"
+#include "warp/image/movie_reader.h"
+#include "warp/image/movie_writer.h"
+
+namespace eikonal {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Movie : public testing::Test {
+  protected:
+    Movie() {
+        std::string pattern = (fs::temp_directory_path() / "eikonal-movie-XXXXXX").string();
+        if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
+        folder_ = pattern;
+    }
+    ~Movie() override { fs::remove_all(folder_); }
+
+    fs::path file(const std::string& name) const { return folder_ / name; }
+
+    static std::string output_of(const std::string& command) {
+        std::string text;
+        FILE* pipe = popen(command.c_str(), "r");
+        std::array<char, 4096> block;
+        for (std::size_t n; pipe && (n = fread(block.data(), 1, block.size(), pipe)) > 0;) text.append(block.data(), n);
+        EXPECT_TRUE(pipe && pclose(pipe) == 0) << command;
+        return text;
+    }
+    /// ffmpeg ARGUMENTS name
+    fs::path make(const std::string& arguments, const std::string& name) const {
+        output_of("ffmpeg -nostdin -v error -y " + arguments + " '" + file(name).string() + "' 2>&1");
+        return file(name);
+    }
+    fs::path test_picture(const std::string& options, const std::string& name, int frames = 10,
+                          const std::string& size = "96x64") const {
+        return make(
+            "-f lavfi -i testsrc2=size=" + size + ":rate=24 -frames:v " + std::to_string(frames) + " " + options, name);
+    }
+    static std::string probe(const fs::path& path, const std::string& what) {
+        return output_of("ffprobe -v error " + what + " '" + path.string() + "'");
+    }
+    static std::string stream_md5(const fs::path& path, const std::string& map) {
+        return output_of("ffmpeg -nostdin -v error -i '" + path.string() + "' -map " + map + " -c copy -f md5 -");
+    }
+    static std::string picture_md5(const fs::path& path) {
+        return output_of("ffmpeg -nostdin -v error -i '" + path.string() + "' -map 0:v -f md5 -");
+    }
+    static std::string bytes(const fs::path& path) {
+        std::ifstream in(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    std::vector<std::string> left_over() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename());
+        return names;
+    }
+
+    /// Copies a movie through linear light with nothing moved, and returns its warnings.
+    std::vector<std::string> pass_through(const fs::path& from, const fs::path& to, MovieSettings settings = {}) const {
+        std::vector<std::string> warnings;
+        settings.warn = [&](const std::string& line) { warnings.push_back(line); };
+        const std::vector<int> chosen = settings.frames;
+        MovieReader reader(from);
+        MovieWriter writer(to, reader, settings);
+        MovieFrame frame;
+        while (reader.next(frame)) {
+            if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), frame.number) == chosen.end()) continue;
+            const LinearImage image = load_frame(frame);
+            store_frame(frame, image, std::vector<std::uint8_t>(image.data.area(), 0));
+            writer.write(frame);
+        }
+        writer.finish();
+        return warnings;
+    }
+
+    template <class Action>
+    static std::string message_of(const Action& action) {
+        try {
+            action();
+        } catch (const std::runtime_error& error) {
+            return error.what();
+        }
+        return "";
+    }
+
+    fs::path folder_;
+};
+
+std::vector<std::int64_t> time_stamps(const fs::path& path) {
+    MovieReader reader(path);
+    std::vector<std::int64_t> result;
+    MovieFrame frame;
+    while (reader.next(frame)) result.push_back(frame.pts);
+    return result;
+}
+
+MovieFrame noise_frame(const MovieFormat& format, unsigned seed) {
+    MovieFrame frame;
+    frame.format = format;
+    std::mt19937 random(seed);
+    for (int plane = 0; plane < 4; ++plane) {
+        if (!format.has_plane(plane)) continue;
+        auto& codes = frame.planes[static_cast<std::size_t>(plane)];
+        codes.resize(static_cast<std::size_t>(format.plane_width(plane) * format.plane_height(plane)));
+        // Around the middle, so that R'G'B' stays in gamut: what lies far outside cannot come back from PQ or HLG.
+        const bool colour = !format.rgb && (plane == 1 || plane == 2);
+        const auto largest = (1u << format.depth) - 1;
+        for (auto& code : codes)
+            code = static_cast<std::uint16_t>(colour ? largest * 3 / 8 + random() % (largest / 4)
+                                                     : largest * 3 / 10 + random() % (largest * 4 / 10));
+        if (plane == 3)
+            for (auto& code : codes) code = static_cast<std::uint16_t>(std::max<unsigned>(code, largest / 2));
+    }
+    return frame;
+}
+
+MovieFormat small_format(int depth) {
+    MovieFormat format;
+    format.width = 38;
+    format.height = 24;
+    format.depth = depth;
+    return format;
+}
+
+int largest_difference(const MovieFrame& a, const MovieFrame& b) {
+    int largest = 0;
+    for (std::size_t plane = 0; plane < 4; ++plane)
+        for (std::size_t i = 0; i < a.planes[plane].size(); ++i)
+            largest = std::max(largest, std::abs(int{a.planes[plane][i]} - int{b.planes[plane][i]}));
+    return largest;
+}
+
+/// Codes after load and store of every pixel.
+MovieFrame there_and_back(const MovieFrame& frame) {
+    const LinearImage image = load_frame(frame);
+    MovieFrame result = frame;
+    for (auto& plane : result.planes) std::fill(plane.begin(), plane.end(), std::uint16_t{1});
+    store_frame(result, image, std::vector<std::uint8_t>(image.data.area(), 1));
+    return result;
+}
+
+// Every family, depth, transfer and siting: linear light leads back to the codes, chroma included.
+TEST(MovieFrame, CodesReturn) {
+    for (const int transfer : {1, 2, 4, 8, 13, 16, 18})
+        for (const int depth : {8, 10, 12}) {
+            std::vector<MovieFormat> formats(8, small_format(depth));
+            formats[0].gray = true;
+            formats[1].rgb = true;
+            formats[2].rgb = formats[2].alpha = true;
+            formats[4].log2_chroma_w = 1;
+            formats[5].log2_chroma_w = formats[5].log2_chroma_h = 1;
+            formats[6].log2_chroma_w = 2;
+            formats[7].log2_chroma_h = 1;
+            for (MovieFormat format : formats)
+                for (int siting = 0; siting <= (format.log2_chroma_h == 1 ? 6 : 0); ++siting)
+                    for (const CodeRange range : {CodeRange::Limited, CodeRange::Full}) {
+                        format.transfer = transfer;
+                        format.siting = static_cast<ChromaSiting>(siting);
+                        format.range = range;
+                        const MovieFrame frame = noise_frame(format, 7);
+                        ASSERT_LE(largest_difference(frame, there_and_back(frame)), depth < 12 ? 0 : 1)
+                            << "transfer " << transfer << " depth " << depth << " rgb " << format.rgb << " chroma "
+                            << format.log2_chroma_w << format.log2_chroma_h << " siting " << siting;
+                    }
+        }
+}
+
+TEST(MovieFrame, KnownColours) {
+    MovieFormat format = small_format(8);
+    format.width = format.height = 4;
+    format.log2_chroma_w = format.log2_chroma_h = 1;
+    format.matrix = 1;
+    format.range = CodeRange::Limited;
+    MovieFrame frame = noise_frame(format, 1);
+    const auto fill = [&](int y, int cb, int cr) {
+        std::fill(frame.planes[0].begin(), frame.planes[0].end(), static_cast<std::uint16_t>(y));
+        std::fill(frame.planes[1].begin(), frame.planes[1].end(), static_cast<std::uint16_t>(cb));
+        std::fill(frame.planes[2].begin(), frame.planes[2].end(), static_cast<std::uint16_t>(cr));
+        const LinearImage image = load_frame(frame);
+        return std::array<float, 4>{image.pixels[20], image.pixels[21], image.pixels[22], image.pixels[23]};
+    };
+    EXPECT_EQ(fill(16, 128, 128), (std::array<float, 4>{0, 0, 0, 1}));
+    for (int lane = 0; lane < 4; ++lane) EXPECT_NEAR(fill(235, 128, 128)[static_cast<std::size_t>(lane)], 1, 1e-5);
+    // BT.709's own red, as its bars code it.
+    const auto red = fill(63, 102, 240);
+    EXPECT_NEAR(red[0], 1, 0.02);
+    EXPECT_NEAR(red[1], 0, 0.005);
+    EXPECT_NEAR(red[2], 0, 0.005);
+    format.matrix = 5;
+    frame.format = format;
+    const auto red601 = fill(81, 90, 240);
+    EXPECT_NEAR(red601[0], 1, 0.02);
+    EXPECT_NEAR(red601[1], 0, 0.005);
+    // Mid-grey of BT.709: V = 0.5 is 0.2597 of linear light.
+    format.depth = 10;
+    frame.format = format;
+    EXPECT_NEAR(fill(64 + 438, 512, 512)[1], 0.2597, 1e-4);
+}
+
+// Only what moved is written, and a chroma sample only with a moved pixel in its cell.
+TEST(MovieFrame, StillCodesStay) {
+    MovieFormat format = small_format(8);
+    format.log2_chroma_w = format.log2_chroma_h = 1;
+    const MovieFrame original = noise_frame(format, 3);
+    LinearImage image = load_frame(original);
+    for (float& value : image.pixels) value = 0.5F;
+    std::vector<std::uint8_t> moved(image.data.area(), 0);
+    const int mx = 11, my = 6;
+    moved[static_cast<std::size_t>(my * format.width + mx)] = 1;
+    MovieFrame frame = original;
+    store_frame(frame, image, moved);
+    for (int plane = 0; plane < 3; ++plane) {
+        const int shift = plane == 0 ? 0 : 1;
+        const int width = format.plane_width(plane);
+        const auto p = static_cast<std::size_t>(plane);
+        for (int i = 0; i < static_cast<int>(frame.planes[p].size()); ++i) {
+            const bool here = i % width == mx >> shift && i / width == my >> shift;
+            const auto k = static_cast<std::size_t>(i);
+            if (here) continue;
+            ASSERT_EQ(frame.planes[p][k], original.planes[p][k]) << plane << " " << i;
+        }
+    }
+    EXPECT_NE(frame.planes[0][static_cast<std::size_t>(my * format.width + mx)],
+              original.planes[0][static_cast<std::size_t>(my * format.width + mx)]);
+    EXPECT_EQ(frame.planes[1][static_cast<std::size_t>((my >> 1) * 19 + (mx >> 1))], 128);
+}
+
+TEST(MovieFrame, NotANumberAndOutOfRangeAreClipped) {
+    MovieFormat format = small_format(10);
+    format.log2_chroma_w = format.log2_chroma_h = 1;
+    MovieFrame frame = noise_frame(format, 3);
+    LinearImage image = load_frame(frame);
+    const std::array<float, 4> bad{std::nanf(""), INFINITY, -INFINITY, 1e30F};
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = bad[(i / 4) % 4];
+    store_frame(frame, image, std::vector<std::uint8_t>(image.data.area(), 1));
+    for (const auto& plane : frame.planes)
+        for (const auto code : plane) ASSERT_LE(code, 1023);
+}
+
+TEST(MovieFrame, PictureWithWindows) {
+    LinearImage image;
+    image.display = {0, 0, 8, 4};
+    image.data = {-2, 1, 6, 2};  // overscan on the left, missing on the right and above
+    image.pixels.assign(image.data.area() * 4, 1.0F);
+    const MovieFormat format = sequence_format("a.mov", 8, 4, 16);
+    EXPECT_EQ(format.depth, 10);
+    EXPECT_EQ(sequence_format("a.mp4", 8, 4, 16).depth, 8);
+    EXPECT_EQ(sequence_format("a.mov", 7, 4, 8).log2_chroma_w, 0);
+    const MovieFrame frame = frame_from_linear(image, format);
+    EXPECT_EQ(frame.planes[0][8 * 1 + 3], 940);
+    EXPECT_EQ(frame.planes[0][8 * 1 + 4], 64);
+    EXPECT_EQ(frame.planes[0][3], 64);
+    EXPECT_EQ(frame.planes[1][0], 512);
+}
+
+TEST_F(Movie, LosslessFamiliesKeepEveryCode) {
+    for (const std::string pixel_format :
+         {"yuv420p", "yuv422p10le", "yuv444p12le", "yuv411p", "yuv410p", "yuv440p", "gray", "gray10le", "gbrp",
+          "gbrp12le", "yuva420p", "gbrap", "bgr0", "rgb48le"}) {
+        const fs::path source = test_picture("-c:v ffv1 -pix_fmt " + pixel_format, "in.mkv", 3);
+        EXPECT_TRUE(pass_through(source, file("out.mkv")).empty()) << pixel_format;
+        EXPECT_EQ(picture_md5(source).size(), 37U);
+        const std::string as = " -pix_fmt " + std::string(pixel_format == "bgr0" ? "gbrp" : pixel_format) + " -f md5 -";
+        const auto codes = [&](const fs::path& path) {
+            return output_of("ffmpeg -nostdin -v error -i '" + path.string() + "' -map 0:v" + as);
+        };
+        EXPECT_EQ(codes(source), codes(file("out.mkv"))) << pixel_format;
+    }
+}
+
+// Packed, semi-planar, palette and big-endian samples come in without loss: compare with ffmpeg's own planes.
+TEST_F(Movie, PackedFormatsAreReadExactly) {
+    struct Case {
+        std::string packed, planar;
+    };
+    for (const Case& c : {Case{"uyvy422", "yuv422p"},
+                          {"yuyv422", "yuv422p"},
+                          {"nv12", "yuv420p"},
+                          {"rgb24", "gbrp"},
+                          {"bgra", "gbrap"},
+                          {"pal8", "gbrap"},
+                          {"rgb48be", "gbrp16le"},
+                          {"ya8", "ya8"},
+                          {"gray16be", "gray16le"}}) {
+        const fs::path source = test_picture("-c:v rawvideo -pix_fmt " + c.packed, "in.nut", 1);
+        const fs::path planes = make("-i '" + source.string() + "' -f rawvideo -pix_fmt " + c.planar, "planes.raw");
+        MovieReader reader(source);
+        MovieFrame frame;
+        ASSERT_TRUE(reader.next(frame)) << c.packed;
+        const std::string raw = bytes(planes);
+        std::vector<int> order = frame.format.rgb ? std::vector<int>{1, 2, 0, 3} : std::vector<int>{0, 1, 2, 3};
+        const std::size_t size = frame.format.depth > 8 ? 2 : 1;
+        std::string ours;
+        if (c.planar == "ya8") {
+            for (std::size_t i = 0; i < frame.planes[0].size(); ++i) {
+                ours += static_cast<char>(frame.planes[0][i]);
+                ours += static_cast<char>(frame.planes[3][i]);
+            }
+        } else {
+            for (const int plane : order)
+                for (const std::uint16_t code : frame.planes[static_cast<std::size_t>(plane)]) {
+                    ours += static_cast<char>(code & 255);
+                    if (size == 2) ours += static_cast<char>(code >> 8);
+                }
+        }
+        // swscale goes from palettes through Y'CbCr, we do not.
+        if (c.packed == "pal8")
+            EXPECT_EQ(ours.size(), raw.size());
+        else
+            EXPECT_TRUE(ours == raw) << c.packed;
+    }
+}
+
+TEST_F(Movie, AudioIsCopiedAndTagsAreKept) {
+    const fs::path source = make(
+        "-f lavfi -i testsrc2=size=96x64:rate=30000/1001 -f lavfi -i sine=440 -f lavfi -i sine=880 -map 0 -map 1 -map "
+        "2 -t 1 "
+        "-c:v libx264 -pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv "
+        "-chroma_sample_location left -vf setsar=4/3 -c:a aac -metadata title=Shimmer -metadata:s:a:0 language=fra",
+        "in.mp4");
+    EXPECT_TRUE(pass_through(source, file("out.mp4")).empty());
+    for (const std::string map : {"0:a:0", "0:a:1"})
+        EXPECT_EQ(stream_md5(source, map), stream_md5(file("out.mp4"), map));
+    const std::string tags =
+        "-select_streams v -show_entries "
+        "stream=codec_name,pix_fmt,color_range,color_space,color_transfer,color_primaries,chroma_location,nb_frames,"
+        "r_frame_rate,avg_frame_rate,sample_aspect_ratio,duration_ts,time_base";
+    EXPECT_EQ(probe(source, tags), probe(file("out.mp4"), tags));
+    EXPECT_NE(probe(source, tags).find("bt709"), std::string::npos);
+    const std::string rest = "-show_entries format_tags=title:stream_tags=language";
+    EXPECT_EQ(probe(source, rest), probe(file("out.mp4"), rest));
+    const std::string audio = "-select_streams a -show_entries packet=pts_time,dts_time";
+    EXPECT_EQ(probe(source, audio), probe(file("out.mp4"), audio));
+    EXPECT_EQ(time_stamps(source), time_stamps(file("out.mp4")));
+
+    pass_through(source, file("again.mp4"));
+    EXPECT_TRUE(bytes(file("out.mp4")) == bytes(file("again.mp4")));
+}
+
+TEST_F(Movie, OtherContainers) {
+    const fs::path source =
+        make("-f lavfi -i testsrc2=size=96x64:rate=24 -f lavfi -i sine -t 0.5 -c:v libx264 -pix_fmt yuv420p -c:a aac",
+             "in.mp4");
+    const auto codec = [&](const fs::path& path) {
+        return probe(path, "-select_streams v -show_entries stream=codec_name -of csv=p=0");
+    };
+    for (const std::string name : {"out.mkv", "out.mov", "out.avi", "out.ts"}) {
+        EXPECT_TRUE(pass_through(source, file(name)).empty()) << name;
+        EXPECT_EQ(codec(file(name)).substr(0, 4), "h264") << name;
+        EXPECT_EQ(time_stamps(file(name)).size(), 12U) << name;
+    }
+    const auto warnings = pass_through(source, file("out.webm"));
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("audio stream 1 (aac) is dropped"), std::string::npos) << warnings[0];
+    EXPECT_EQ(codec(file("out.webm")).substr(0, 3), "vp9");
+}
+
+TEST_F(Movie, DeepSourcesStayDeep) {
+    const fs::path h264 = test_picture(
+        "-c:v libx264 -pix_fmt yuv420p10le -colorspace bt2020nc -color_primaries bt2020 -color_trc smpte2084 "
+        "-color_range tv",
+        "in.mp4");
+    const fs::path prores = test_picture("-c:v prores_ks -profile:v 3 -pix_fmt yuv422p10le", "in.mov");
+    std::vector<fs::path> sources{h264, prores};
+#ifndef EIKONAL_SANITIZED  // libx265 itself leaks
+    sources.push_back(test_picture("-c:v libx265 -x265-params log-level=none -pix_fmt yuv420p10le", "hevc.mp4"));
+#endif
+    const std::string what =
+        "-select_streams v -show_entries stream=codec_name,profile,pix_fmt,color_space,color_transfer,color_primaries";
+    for (const fs::path& source : sources) {
+        const fs::path out = file("out" + source.extension().string());
+        EXPECT_TRUE(pass_through(source, out).empty());
+        EXPECT_EQ(probe(source, what), probe(out, what)) << source;
+        EXPECT_EQ(time_stamps(source).size(), 10U);
+    }
+}
+
+TEST_F(Movie, VariableRateAndRotation) {
+    const fs::path plain = make(
+        "-f lavfi -i testsrc2=size=96x64:rate=25 -frames:v 20 -vf \"select='not(mod(n,3))+eq(n,1)'\" -vsync vfr "
+        "-c:v libx264 -pix_fmt yuv420p",
+        "plain.mp4");
+    const fs::path source = make("-i '" + plain.string() + "' -c copy -metadata:s:v rotate=90", "in.mp4");
+    const auto stamps = time_stamps(source);
+    ASSERT_GE(stamps.size(), 7U);
+    EXPECT_NE(stamps[1] - stamps[0], stamps[3] - stamps[2]);
+    EXPECT_EQ(MovieReader(source).rotation(), 270);  // this ffmpeg counts anticlockwise
+    pass_through(source, file("out.mp4"));
+    EXPECT_EQ(time_stamps(file("out.mp4")), stamps);
+    EXPECT_EQ(MovieReader(file("out.mp4")).rotation(), 270);
+    const std::string length = "-show_entries format=duration";
+    EXPECT_EQ(probe(source, length), probe(file("out.mp4"), length));
+}
+
+TEST_F(Movie, PartsOfAMovie) {
+    const fs::path source =
+        make("-f lavfi -i testsrc2=size=96x64:rate=25 -f lavfi -i sine -t 2 -c:v ffv1 -pix_fmt yuv420p -c:a pcm_s16le",
+             "in.mkv");
+    MovieSettings middle;
+    middle.frames.resize(25);
+    std::iota(middle.frames.begin(), middle.frames.end(), 11);
+    EXPECT_TRUE(pass_through(source, file("part.mkv"), middle).empty());
+    const auto stamps = time_stamps(file("part.mkv"));
+    ASSERT_EQ(stamps.size(), 25U);
+    EXPECT_EQ(stamps.front(), 0);
+    const double sound =
+        std::stod(probe(file("part.mkv"), "-select_streams a -show_entries format=duration -of csv=p=0"));
+    EXPECT_NEAR(sound, 1.0, 0.06);
+
+    MovieSettings gaps;
+    gaps.frames = {1, 3, 5};
+    const auto warnings = pass_through(source, file("gaps.mkv"), gaps);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("gaps"), std::string::npos);
+    EXPECT_EQ(time_stamps(file("gaps.mkv")), (std::vector<std::int64_t>{0, 40, 80}));
+
+    MovieReader reader(source);
+    EXPECT_EQ(reader.frame_count(), 50);
+    MovieFrame frame;
+    for (int i = 0; i < 9; ++i) EXPECT_TRUE(reader.skip());
+    EXPECT_EQ(reader.next_number(), 10);
+    ASSERT_TRUE(reader.next(frame));
+    EXPECT_EQ(frame.number, 10);
+    EXPECT_EQ(frame.pts, 360);
+}
+
+TEST_F(Movie, MadeFromPictures) {
+    const MovieFormat format = sequence_format("a.mp4", 64, 48, 8, 2.0);
+    LinearImage image;
+    image.data = image.display = {0, 0, 64, 48};
+    image.pixels.assign(image.data.area() * 4, 0.25F);
+    for (const std::string name : {"a.mp4", "b.mp4"}) {
+        MovieWriter writer(file(name), format, {24000, 1001});
+        for (int i = 0; i < 7; ++i) writer.write(frame_from_linear(image, format));
+        EXPECT_FALSE(fs::exists(file(name)));
+        writer.finish();
+    }
+    EXPECT_TRUE(bytes(file("a.mp4")) == bytes(file("b.mp4")));
+    EXPECT_EQ(probe(file("a.mp4"),
+                    "-show_entries stream=codec_name,pix_fmt,color_range,color_space,sample_aspect_ratio,"
+                    "r_frame_rate,nb_frames -of csv=p=0"),
+              "h264,2:1,yuv420p,tv,bt709,24000/1001,7\n");
+    EXPECT_TRUE(message_of([&] { MovieWriter(file("c.mp4"), format, {0, 1}); }).ends_with("give a positive one"));
+    MovieSettings settings;
+    settings.codec = "divx";
+    EXPECT_NE(message_of([&] {
+                  MovieWriter(file("c.mp4"), format, {24, 1}, settings);
+              }).find("allowed: h264"),
+              std::string::npos);
+    EXPECT_THROW(MovieWriter(file("c.xyz"), format, {24, 1}), UserError);
+}
+
+TEST_F(Movie, OddSizes) {
+    const fs::path vp9 = test_picture("-vf format=gbrp,crop=95:63,format=yuv420p -c:v libvpx-vp9", "in.webm", 3);
+    EXPECT_TRUE(pass_through(vp9, file("same.webm")).empty());
+    const auto warnings = pass_through(vp9, file("out.mp4"), [] {
+        MovieSettings settings;
+        settings.codec = "h264";
+        return settings;
+    }());
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("even sizes only, not 95x63"), std::string::npos) << warnings[0];
+    EXPECT_EQ(probe(file("out.mp4"), "-show_entries stream=width,height,pix_fmt -of csv=p=0"), "95,63,yuv444p\n");
+}
+
+TEST_F(Movie, BadFiles) {
+    const auto open = [](const fs::path& path) { return message_of([&] { MovieReader reader(path); }); };
+    EXPECT_NE(open(file("none.mp4")).find("no such movie"), std::string::npos);
+    EXPECT_NE(open(folder_).find("not a regular file"), std::string::npos);
+    std::ofstream(file("zero.mp4"));
+    EXPECT_NE(open(file("zero.mp4")).find("empty"), std::string::npos);
+    std::ofstream(file("text.mp4")) << "This is no movie, whatever its name says.\n";
+    EXPECT_NE(open(file("text.mp4")).find("cannot be read as a movie"), std::string::npos);
+    make("-f lavfi -i sine -t 0.2 -c:a aac", "sound.mp4");
+    EXPECT_NE(open(file("sound.mp4")).find("no video stream"), std::string::npos);
+    const fs::path source = test_picture("-c:v libx264 -pix_fmt yuv420p", "good.mp4", 30);
+    fs::resize_file(source, fs::file_size(source) / 2);  // the index is at the end
+    EXPECT_NE(open(source).find("cannot be read as a movie"), std::string::npos);
+    for (const std::string& name : left_over()) EXPECT_EQ(open(file(name)).find('\n'), std::string::npos);
+}
+
+TEST_F(Movie, CutOffMoviesNameTheFrame) {
+    for (const std::string options : {"-c:v libx264 -pix_fmt yuv420p -movflags faststart in.mp4", "-c:v ffv1 in.mkv",
+                                      "-c:v mpeg4 -q:v 2 in.avi", "-c:v mjpeg in.mov -movflags faststart"}) {
+        const bool faststart = options.find("mjpeg") != std::string::npos;
+        const std::string name = faststart ? "in.mov" : options.substr(options.rfind(' ') + 1);
+        const fs::path source = test_picture(
+            faststart ? "-c:v mjpeg -movflags faststart" : options.substr(0, options.rfind(' ')), name, 60);
+        fs::resize_file(source, fs::file_size(source) * 3 / 4);
+        MovieReader reader(source);
+        MovieFrame frame;
+        int good = 0;
+        std::string message;
+        for (bool more = true; more;) {
+            message = message_of([&] {
+                while ((more = reader.next(frame))) ++good;
+            });
+            if (!message.empty()) break;
+        }
+        EXPECT_NE(message.find(source.string() + ": frame "), std::string::npos) << name << " " << message;
+        EXPECT_GT(good, 20) << name;
+        EXPECT_LT(good, 60) << name;
+        for (int guard = 0; guard < 100; ++guard)  // further reading ends
+            if (message_of([&] { reader.next(frame); }).empty() && !reader.skip()) break;
+        EXPECT_FALSE(reader.skip());
+    }
+}
+
+TEST_F(Movie, DamagedFrameInTheMiddle) {
+    const fs::path source = test_picture("-c:v ffv1 -level 3 -slicecrc 1 -pix_fmt yuv420p", "in.mkv", 30);
+    std::string data = bytes(source);
+    for (std::size_t i = 0; i < 40; ++i) data[data.size() / 2 + i] = static_cast<char>(~data[data.size() / 2 + i]);
+    std::ofstream(source, std::ios::binary) << data;
+    MovieReader reader(source);
+    MovieFrame frame;
+    int good = 0, bad = 0;
+    for (bool more = true; more && bad < 100;) {
+        const std::string message = message_of([&] {
+            more = reader.next(frame);
+            good += more;
+        });
+        if (!message.empty()) ++bad;
+    }
+    EXPECT_GE(bad, 1);
+    EXPECT_LE(bad, 3);
+    EXPECT_GE(good, 27);
+    EXPECT_EQ(good + bad, 30);
+}
+
+TEST_F(Movie, WriterFailsCleanly) {
+    const fs::path source = test_picture("-c:v ffv1 -pix_fmt yuv420p", "in.mkv", 30);
+    MovieReader reader(source);
+    EXPECT_NE(message_of([&] { MovieWriter writer(source, reader); }).find("output and input"), std::string::npos);
+    EXPECT_THROW(MovieWriter(file("nowhere/out.mkv"), reader), FrameError);
+    EXPECT_THROW(MovieWriter(file("out.mkv"), reader).finish(), FrameError);
+
+    // A limit on file sizes stands for a full disk.
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{20000, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string message = message_of([&] { pass_through(source, file("out.mkv")); });
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_NE(message.find("out.mkv: cannot be written"), std::string::npos) << message;
+    EXPECT_EQ(left_over(), std::vector<std::string>{"in.mkv"});
+}
+
+}  // namespace
+}  // namespace eikonal

@@ -1,0 +1,72 @@
+// The reference for lattice fields: the trigonometric sum itself, term by term, in double precision and with the C
+// library's sine. Shares nothing with the library but the spectrum's layout. Nyquist modes are cosines in n and absent
+// from the derivative along their axis.
+#pragma once
+
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "noise/lattice.h"
+#include "noise/lattice_snapshot.h"
+
+namespace eikonal {
+
+class TrigonometricSum {
+  public:
+    TrigonometricSum(const FftVector<complex32>& spectrum, const LatticeGeometry& geometry)
+        : spectrum_(spectrum.begin(), spectrum.end()), g_(geometry) {}
+
+    IndexSample sample(const dvec3& x) const {
+        std::array<std::vector<std::complex<double>>, 3> value, slope;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int n = g_.size[axis], count = axis == 2 ? n / 2 + 1 : n;
+            for (int i = 0; i < count; ++i) {
+                const double k = 2 * M_PI * (2 * i <= n ? i : i - n) / g_.period[axis];
+                const bool nyquist = 2 * i == n;
+                const std::complex<double> e = nyquist ? std::cos(k * x[axis]) : std::polar(1.0, k * x[axis]);
+                value[axis].push_back(e);
+                slope[axis].push_back(nyquist ? 0.0 : std::complex<double>(0, k) * e);
+            }
+        }
+        IndexSample out{0, {0, 0, 0}};
+        std::size_t at = 0;
+        for (int ix = 0; ix < g_.size[0]; ++ix)
+            for (int iy = 0; iy < g_.size[1]; ++iy)
+                for (int iz = 0; iz <= g_.size[2] / 2; ++iz, ++at) {
+                    const double both = iz == 0 || 2 * iz == g_.size[2] ? 1 : 2;
+                    const auto &vx = value[0][ix], &vy = value[1][iy], &vz = value[2][iz];
+                    const std::complex<double> a = both * spectrum_[at];
+                    out.n += std::real(a * vx * vy * vz);
+                    out.gradient.x += std::real(a * slope[0][ix] * vy * vz);
+                    out.gradient.y += std::real(a * vx * slope[1][iy] * vz);
+                    out.gradient.z += std::real(a * vx * vy * slope[2][iz]);
+                }
+        return out;
+    }
+
+  private:
+    std::vector<std::complex<double>> spectrum_;
+    LatticeGeometry g_;
+};
+
+/// Plain forward transform, nx × ny × nz, axis by axis.
+inline std::vector<std::complex<double>> forward_transform(std::span<const float> samples, const LatticeGeometry& g) {
+    std::vector<std::complex<double>> data(samples.begin(), samples.end());
+    std::size_t stride = data.size();
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto n = static_cast<std::size_t>(g.size[axis]);
+        stride /= n;
+        std::vector<std::complex<double>> out(data.size());
+        for (std::size_t i = 0; i < data.size(); ++i) {
+            const std::size_t k = i / stride % n, base = i - k * stride;
+            for (std::size_t j = 0; j < n; ++j)
+                out[i] += data[base + j * stride] *
+                          std::polar(1.0, -2 * M_PI * static_cast<double>(j * k % n) / static_cast<double>(n));
+        }
+        data = std::move(out);
+    }
+    return data;
+}
+
+}  // namespace eikonal

@@ -1,0 +1,121 @@
+#include "warp/app/depth_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "noise/error.h"
+
+namespace eikonal {
+namespace {
+
+constexpr double kDefaultFar = 1000;
+
+double parse_part(const std::string& all, std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        throw UserError(fmt::format("--ground: '{}' must be HEIGHT,HORIZON: metres above the ground, and the horizon's row from the top in "
+                                    "pixels or as a part of the height like 55%", all));
+    return value;
+}
+
+}  // namespace
+
+FileChannel split_channel(const std::string& text) {
+    std::error_code ignored;
+    const auto colon = text.rfind(':');
+    if (colon == std::string::npos || std::filesystem::exists(text, ignored)) return {text, ""};
+    if (text.find('/', colon) != std::string::npos) return {text, ""};
+    return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
+    options_.type = a.type;
+    options_.range = a.range;
+    if (a.depth) {
+        const FileChannel split = split_channel(*a.depth);
+        options_.channel = split.channel;
+        inside_input_ = split.file.empty();
+        if (inside_input_ && split.channel.empty())
+            throw UserError(fmt::format("--depth: '{}' names neither a file nor a channel; give FILE, FILE:CHANNEL or :CHANNEL", *a.depth));
+        if (!inside_input_) {
+            if (is_movie(split.file))
+                throw UserError(fmt::format("--depth: '{}' is a movie, which cannot hold depth in metres; make a sequence of it first, e.g. "
+                                            "ffmpeg -i {} depth.%04d.png", split.file.string(), split.file.filename().string()));
+            files_ = FilePattern::parse(split.file);
+        }
+    } else if (a.distance) {
+        constant_ = a.distance;
+    } else if (a.ground) {
+        const auto comma = a.ground->find(',');
+        if (comma == std::string::npos) parse_part(*a.ground, "?");
+        std::string_view horizon = std::string_view(*a.ground).substr(comma + 1);
+        const bool fraction = horizon.ends_with('%');
+        if (fraction) horizon.remove_suffix(1);
+        ground_ = Ground{parse_part(*a.ground, std::string_view(*a.ground).substr(0, comma)), parse_part(*a.ground, horizon), fraction};
+        if (fraction) ground_->horizon /= 100;
+        if (!(ground_->height > 0)) throw UserError(fmt::format("--ground: the camera's height {} must be more than 0", ground_->height));
+    } else if (plate.ground) {
+        ground_ = Ground{(*plate.ground)[0], (*plate.ground)[1], true};
+    } else {
+        constant_ = plate.distance.value_or(plate.far.value_or(kDefaultFar));
+    }
+    const std::optional<double> range_far = a.range ? std::optional(std::max((*a.range)[0], (*a.range)[1])) : std::nullopt;
+    if (a.far)
+        far_ = *a.far;
+    else if (constant_)
+        far_ = *constant_;
+    else
+        far_ = range_far.value_or(plate.far.value_or(kDefaultFar));
+    if (constant_ && *constant_ > far_)
+        throw UserError(fmt::format("--far {:g} is nearer than the distance {:g}; give a larger --far or a smaller --distance", far_, *constant_));
+    options_.far = far_;
+    if (a.depth) check_depth_options(options_);
+}
+
+std::string DepthInput::description() const {
+    if (constant_) return fmt::format("everything at {:g} m along the axis", *constant_);
+    if (ground_) return fmt::format("flat ground {:g} m below the camera, background at {:g} m", ground_->height, far_);
+    if (inside_input_) return fmt::format("channel '{}' of the input, background at {:g} m", options_.channel, far_);
+    return fmt::format("'{}'{}, background at {:g} m", files_->text().string(),
+                       options_.channel.empty() ? "" : fmt::format(" channel '{}'", options_.channel), far_);
+}
+
+DepthPlane DepthInput::ground_plane(const PixelWindow& data, const PixelWindow& display, const Camera& camera) const {
+    const double horizon = display.y0 + (ground_->fraction ? ground_->horizon * display.height : ground_->horizon);
+    const double f = camera.f_px * camera.pixel_aspect;
+    std::vector<float> metres(data.area());
+    for (int y = 0; y < data.height; ++y) {
+        const double below = data.y0 + y + 0.5 - horizon;
+        const double z = below > 0 ? std::min(ground_->height * f / below, far_) : far_;
+        const auto row = metres.begin() + static_cast<std::ptrdiff_t>(y) * data.width;
+        std::fill(row, row + data.width, static_cast<float>(z));
+    }
+    return {data, std::move(metres)};
+}
+
+DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
+                             const PixelWindow& display, const Camera& camera) const {
+    if (constant_) return {data, std::vector<float>(data.area(), static_cast<float>(*constant_))};
+    if (ground_) return ground_plane(data, display, camera);
+    if (inside_input_ && input == nullptr)
+        throw UserError(fmt::format("--depth :{}: a movie holds no depth channel; name a file", options_.channel));
+    DepthBuffer buffer = inside_input_ ? depth_from_picture(*input, input_file, options_, data, display)
+                                       : read_depth(files_->at(frame), options_, data, display);
+    const auto far = static_cast<float>(far_);
+    for (int y = 0; y < data.height; ++y)
+        for (int x = 0; x < data.width; ++x) {
+            float& z = buffer.metres[static_cast<std::size_t>(y) * static_cast<std::size_t>(data.width) + static_cast<std::size_t>(x)];
+            if (buffer.along_ray && camera.projection == Projection::Perspective) {
+                const dvec2 s = camera.slope(data.x0 + x + 0.5, data.y0 + y + 0.5);
+                z = static_cast<float>(z / std::sqrt(1 + s.x * s.x + s.y * s.y));
+            }
+            z = std::clamp(z, kNearestDepth, far);
+        }
+    return {data, std::move(buffer.metres)};
+}
+
+}  // namespace eikonal

@@ -1,0 +1,57 @@
+/// Where the picture's objects are, frame by frame: --distance, --depth, --ground or the scene's [plate], as axial depth.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "warp/app/options.h"
+#include "warp/image/sequence.h"
+#include "warp/scene/camera.h"
+#include "warp/scene/scene.h"
+
+namespace eikonal {
+
+/// FILE[:CHANNEL] taken apart.
+struct FileChannel {
+    std::filesystem::path file;  ///< empty: the channel is in INPUT
+    std::string channel;
+};
+FileChannel split_channel(const std::string& text);
+
+class DepthInput {
+  public:
+    /// Decides the source. UserError: ill-formed values, nothing that tells a distance.
+    DepthInput(const DepthArguments& arguments, const PlateSpec& plate);
+
+    /// Greatest distance of the shot [m]: --far, else the map's range, the constant distance, the scene's, or 1000.
+    double far() const { return far_; }
+    /// Whether one distance holds for all pixels.
+    std::optional<double> constant() const { return constant_; }
+    /// The depth map's files; empty if there is none or it is a channel of INPUT.
+    const std::optional<FilePattern>& files() const { return files_; }
+    bool inside_input() const { return inside_input_; }
+    /// One line for --verbose.
+    std::string description() const;
+
+    /// Axial depth on `data`, limited to far(). `input`: the frame's picture, where the map is a channel of it (or null).
+    DepthPlane plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
+                     const PixelWindow& display, const Camera& camera) const;
+
+  private:
+    struct Ground {
+        double height, horizon;
+        bool fraction;  ///< horizon is a part of the display's height, else pixels
+    };
+    DepthPlane ground_plane(const PixelWindow& data, const PixelWindow& display, const Camera& camera) const;
+
+    DepthOptions options_;
+    double far_;
+    std::optional<double> constant_;
+    std::optional<FilePattern> files_;
+    std::optional<Ground> ground_;
+    bool inside_input_ = false;
+};
+
+}  // namespace eikonal

@@ -1,0 +1,332 @@
+#include "warp/app/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+
+#include "noise/error.h"
+#include "warp/scene/message.h"
+
+namespace eikonal {
+namespace {
+
+constexpr const char* kVersion = "eikonal " EIKONAL_VERSION;
+
+constexpr const char* kAbout =
+    "Adds physically computed heat shimmer to images, image sequences and movies.\n\n"
+    "  eikonal warp plate.jpg -o out.png --preset hot-road\n"
+    "  eikonal warp plate.####.exr -o out.####.exr --scene air.toml --depth depth.####.exr:Z\n"
+    "  eikonal warp still.png -o shimmer.mp4 --frames 1-96 --preset gentle --rms 1.5\n";
+
+constexpr const char* kFiles =
+    "\nFiles: one image, a sequence (#### four digits, @ one, %04d) or a movie. `eikonal COMMAND --help` tells more.";
+
+template <class T>
+using Names = std::vector<std::pair<std::string, T>>;
+
+const Names<Model> kModels{{"table", Model::Table},
+                           {"tables", Model::Tables},
+                           {"spectral", Model::Spectral},
+                           {"screens", Model::Screens},
+                           {"first-order", Model::FirstOrder}};
+const Names<Filter> kFilters{
+    {"bilinear", Filter::Bilinear}, {"cubic", Filter::Cubic}, {"lanczos3", Filter::Lanczos3}, {"area", Filter::Area}};
+const Names<Edge> kEdges{
+    {"mirror", Edge::Mirror}, {"clamp", Edge::Clamp}, {"wrap", Edge::Wrap}, {"black", Edge::Black}};
+const Names<DepthType> kDepthTypes{{"z", DepthType::Z}, {"ray", DepthType::Ray}, {"inverse", DepthType::Inverse}};
+const Names<DepthMeeting> kMeetings{
+    {"march", DepthMeeting::March}, {"fixed-point", DepthMeeting::FixedPoint}, {"own", DepthMeeting::Own}};
+const Names<ProgressStyle> kProgress{{"auto", ProgressStyle::Auto},
+                                     {"bar", ProgressStyle::Bar},
+                                     {"plain", ProgressStyle::Plain},
+                                     {"none", ProgressStyle::None}};
+
+template <class T>
+std::string joined(const Names<T>& names) {
+    std::string text;
+    for (const auto& [name, value] : names) text += (text.empty() ? "" : "|") + name;
+    return text;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& valid) {
+    const std::vector<std::string_view> views(valid.begin(), valid.end());
+    const std::string_view near = scene_file::nearest(word, views);
+    return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+}
+
+/// An option whose value is one of a list of names.
+template <class Target, class T>
+void add_choice(CLI::App& app, const std::string& flag, Target& target, const Names<T>& names, const std::string& help) {
+    app.add_option_function<std::string>(
+           flag,
+           [flag, &target, &names](const std::string& text) {
+               std::vector<std::string> valid;
+               for (const auto& [name, value] : names) {
+                   if (name == text) {
+                       target = value;
+                       return;
+                   }
+                   valid.push_back(name);
+               }
+               throw UserError(fmt::format("{}: '{}' is none of {}{}", flag, text, joined(names), suggestion(text, valid)));
+           },
+           help)
+        ->type_name(joined(names));
+}
+
+double number(const std::string& option, std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        throw UserError(fmt::format("{}: '{}' is not a number", option, text));
+    return value;
+}
+
+/// A number with a range; `allowed` says it in words.
+template <class Target>
+void add_number(CLI::App& app, const std::string& flag, Target& target, const std::string& type, const std::string& help,
+                const std::string& allowed, bool (*valid)(double)) {
+    app.add_option_function<std::string>(
+           flag,
+           [flag, &target, allowed, valid](const std::string& text) {
+               const double value = number(flag, text);
+               if (!valid(value)) throw UserError(fmt::format("{}: {} must be {}", flag, text, allowed));
+               target = static_cast<std::remove_reference_t<decltype(target)>>(value);
+           },
+           help)
+        ->type_name(type);
+}
+
+bool positive(double v) { return v > 0; }
+bool not_negative(double v) { return v >= 0; }
+
+std::array<double, 2> pair_of(const std::string& option, const std::string& text) {
+    const auto comma = text.find(',');
+    if (comma == std::string::npos) throw UserError(fmt::format("{}: '{}' must be two numbers, NEAR,FAR", option, text));
+    return {number(option, std::string_view(text).substr(0, comma)), number(option, std::string_view(text).substr(comma + 1))};
+}
+
+void add_scene(CLI::App& app, SceneOptions& o) {
+    auto* scene = app.add_option("--scene", o.scene, "scene file (TOML): media, camera, time, optics")->type_name("FILE");
+    auto* preset = app.add_option("--preset", o.preset, "a scene that comes with eikonal (default: gentle)")->type_name("NAME");
+    scene->excludes(preset);
+    app.add_option("--set", o.settings, "change a key of the scene, e.g. medium.0.cn2=1e-13 (repeatable)")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->take_all();
+    app.add_option_function<std::string>(
+           "--seed",
+           [&o](const std::string& text) {
+               std::uint64_t seed = 0;
+               const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+               if (error != std::errc() || end != text.data() + text.size())
+                   throw UserError(fmt::format("--seed: '{}' must be a whole number, 0 or more", text));
+               o.seed = seed;
+           },
+           "another turbulence of the same kind")
+        ->type_name("N");
+    add_number(app, "--fov", o.fov, "DEG", "horizontal field of view, instead of the scene's", "between 0 and 180 degrees",
+               [](double v) { return v > 0 && v < 180; });
+}
+
+void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
+    const std::string group = "Depth";
+    add_number(app, "--distance", o.distance, "M", "constant distance along the axis [m]", "more than 0", positive);
+    app.add_option("--depth", o.depth,
+                   with_input ? "depth map; :CHANNEL alone names a channel of INPUT" : "depth map")
+        ->type_name("FILE[:CHANNEL]");
+    add_choice(app, "--depth-type", o.type, kDepthTypes, "metres along the axis (default), along the ray, or 1/metres");
+    app.add_option_function<std::string>(
+           "--depth-range", [&o](const std::string& text) { o.range = pair_of("--depth-range", text); },
+           "metres that codes 0 and 1 of a map without units mean (inverse: 1 is NEAR)")
+        ->type_name("NEAR,FAR");
+    app.add_option("--ground", o.ground,
+                   "flat ground: camera height [m] and the horizon's row from the top, in pixels or as 55%")
+        ->type_name("HEIGHT,HORIZON");
+    add_number(app, "--far", o.far, "M", "distance of the background (default: the scene's, else 1000)", "more than 0", positive);
+    add_choice(app, "--depth-meeting", o.meeting, kMeetings,
+               "how a bent ray meets the depth map: followed to the first surface (default), iterated, or the pixel's own depth");
+    for (const char* name : {"--distance", "--depth", "--depth-type", "--depth-range", "--ground", "--far", "--depth-meeting"})
+        app.get_option(name)->group(group);
+}
+
+void add_strength(CLI::App& app, StrengthOptions& o) {
+    app.add_option("--mask", o.mask, "matte that scales the displacement, 0 … 1")->type_name("FILE[:CHANNEL]");
+    add_number(app, "--rms", o.rms, "PX", "scale the displacement to this rms at --far, fixed over the shot", "0 or more",
+               not_negative);
+    add_number(app, "--gain", o.gain, "X", "multiply the displacement", "0 or more", not_negative);
+    add_choice(app, "--model", o.model, kModels, "how displacement is computed (default: what suits each medium)");
+    app.add_option("--stmap", o.stmap, "also write the map as STMap (Nuke, Blender)")->type_name("FILE");
+    for (const char* name : {"--mask", "--rms", "--gain", "--model", "--stmap"}) app.get_option(name)->group("Displacement");
+}
+
+void add_run(CLI::App& app, RunOptions& o) {
+    app.add_option("--frames", o.frames, "1001-1100, 1-9x2 or 1-9:2 (step), lists with commas")->type_name("RANGE");
+    app.add_option_function<std::string>(
+           "--threads",
+           [&o](const std::string& text) {
+               const double n = number("--threads", text);
+               if (n < 1 || n > 1024 || n != std::floor(n))
+                   throw UserError(fmt::format("--threads: {} must be a whole number from 1 to 1024", text));
+               o.threads = static_cast<int>(n);
+           },
+           "processors to use (default: all); the result does not depend on it")
+        ->type_name("N");
+    app.add_flag("--overwrite", o.overwrite, "make every frame anew (default: keep finished ones)");
+    app.add_flag("--skip-bad-frames", o.skip_bad_frames, "go on after a frame that cannot be read or written");
+    app.add_flag("--verbose,-v", o.verbose, "say what is computed and why");
+    add_choice(app, "--progress", o.progress, kProgress, "how progress is shown on stderr");
+    app.add_option("--report", o.report, "write what was done as JSON")->type_name("FILE");
+    for (const char* name :
+         {"--frames", "--threads", "--overwrite", "--skip-bad-frames", "--verbose", "--progress", "--report"})
+        app.get_option(name)->group("Run");
+}
+
+void add_warp(CLI::App& app, WarpOptions& o) {
+    app.add_option("INPUT", o.input, "image, sequence or movie")->required();
+    app.add_option("-o,--output", o.output, "image, sequence or movie")->required()->type_name("OUTPUT");
+    add_scene(app, o.scene);
+    add_depth(app, o.depth, true);
+    add_strength(app, o.strength);
+    app.add_option("--displacement", o.displacement, "also write the map as channels u, v in pixels")->type_name("FILE")->group("Displacement");
+    add_choice(app, "--filter", o.filter, kFilters, "reconstruction (default cubic)");
+    add_choice(app, "--edge", o.edge, kEdges, "what lies outside the picture (default mirror)");
+    add_number(app, "--shutter", o.shutter, "FRACTION", "motion blur: part of the frame time that the shutter is open",
+               "from 0 to 1", [](double v) { return v >= 0 && v <= 1; });
+    app.add_option_function<std::string>(
+           "--samples",
+           [&o](const std::string& text) {
+               const double n = number("--samples", text);
+               if (n < 1 || n > 1024 || n != std::floor(n))
+                   throw UserError(fmt::format("--samples: {} must be a whole number from 1 to 1024", text));
+               o.samples = static_cast<int>(n);
+           },
+           "instants within the shutter (default 8 with --shutter)")
+        ->type_name("N");
+    add_number(app, "--dispersion", o.dispersion, "X", "colour fringes: 0 off (default), 1 true air", "0 or more", not_negative);
+    app.add_option("--codec", o.codec, "of a movie (default: the input's, else h264)")->type_name("NAME");
+    add_number(app, "--quality", o.quality, "CRF", "of a movie, lower is better", "0 or more", not_negative);
+    for (const char* name : {"--filter", "--edge", "--shutter", "--samples", "--dispersion", "--codec", "--quality"})
+        app.get_option(name)->group("Picture");
+    add_run(app, o.run);
+}
+
+void add_map(CLI::App& app, MapOptions& o) {
+    app.add_option("-o,--output", o.output, "displacement map (EXR, channels u and v in pixels)")->required()->type_name("OUTPUT");
+    add_scene(app, o.scene);
+    add_depth(app, o.depth, false);
+    add_strength(app, o.strength);
+    add_run(app, o.run);
+}
+
+void add_field(CLI::App& app, FieldOptions& o) {
+    app.add_option("-o,--output", o.output, "one file a z-slice (EXR, channels n, F.x, F.y, F.z); #### is the slice")
+        ->required()
+        ->type_name("OUTPUT");
+    add_scene(app, o.scene);
+    app.remove_option(app.get_option("--fov"));
+    add_number(app, "--frame", o.frame, "F", "frame whose field is written (default: the scene's first)", "a number",
+               [](double) { return true; });
+    app.add_option_function<std::string>(
+           "--medium",
+           [&o](const std::string& text) {
+               const double n = number("--medium", text);
+               if (n < 0 || n != std::floor(n)) throw UserError(fmt::format("--medium: {} must be 0 or more", text));
+               o.medium = static_cast<int>(n);
+           },
+           "which medium of the scene, from 0 (default)")
+        ->type_name("N");
+    add_run(app, o.run);
+    for (const char* name : {"--frames", "--skip-bad-frames", "--report"}) app.remove_option(app.get_option(name));
+}
+
+/// One line from CLI11's own error, with the nearest valid name for a misspelt option or command.
+[[noreturn]] void rephrase(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words) {
+    const CLI::App* at = &app;
+    for (const CLI::App* sub : app.get_subcommands()) at = sub;
+    std::vector<std::string> valid;
+    for (const CLI::Option* option : at->get_options())
+        for (const auto& name : option->get_lnames()) valid.push_back("--" + name);
+    std::vector<std::string> commands;
+    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) commands.push_back(sub->get_name());
+    if (at == &app && (words.empty() || words.front().rfind('-', 0) != 0)) {
+        if (words.empty()) throw UserError(fmt::format("no command given; one of {}", fmt::join(commands, ", ")));
+        throw UserError(fmt::format("'{}' is no command; one of {}{}", words.front(), fmt::join(commands, ", "),
+                                    suggestion(words.front(), commands)));
+    }
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
+        for (const std::string& word : at->remaining(true)) {
+            const std::string name = word.substr(0, word.find('='));
+            if (name.rfind("--", 0) == 0)
+                throw UserError(fmt::format("{}: no such option of '{}'{}; see --help", name, at->get_name(), suggestion(name, valid)));
+            throw UserError(fmt::format("'{}': too many arguments for '{}'; see --help", word, at->get_name()));
+        }
+    std::string text = error.what();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    throw UserError(fmt::format("{}; see 'eikonal {} --help'", text, at == &app ? "" : at->get_name()));
+}
+
+void check(DepthArguments& o) {
+    int sources = 0;
+    std::string given;
+    for (const auto& [name, is] : {std::pair{"--distance", o.distance.has_value()}, std::pair{"--depth", o.depth.has_value()},
+                                   std::pair{"--ground", o.ground.has_value()}})
+        if (is) {
+            ++sources;
+            given += fmt::format("{}{}", given.empty() ? "" : " and ", name);
+        }
+    if (sources > 1) throw UserError(given + " contradict each other; give one of them");
+    if (o.range && !o.depth) throw UserError("--depth-range: needs a --depth map");
+}
+
+}  // namespace
+
+Command parse_options(int argc, const char* const* argv) {
+    CLI::App app{kAbout};
+    app.name("eikonal");
+    app.footer(kFiles);
+    app.require_subcommand(1);
+    app.set_version_flag("--version", kVersion);
+    app.get_formatter()->column_width(34);
+
+    WarpOptions warp;
+    MapOptions map;
+    FieldOptions field;
+    auto* warp_command = app.add_subcommand("warp", "distort an image, a sequence or a movie");
+    add_warp(*warp_command, warp);
+    auto* map_command = app.add_subcommand("map", "write displacement maps without any footage");
+    add_map(*map_command, map);
+    auto* field_command = app.add_subcommand("field", "write slices of the refractive field, for analysis");
+    add_field(*field_command, field);
+    app.add_subcommand("presets", "list the presets, a line each");
+
+    std::vector<std::string> words(argv + 1, argv + argc);
+    try {
+        std::vector<std::string> reversed(words.rbegin(), words.rend());
+        app.parse(reversed);
+    } catch (const CLI::CallForHelp&) {
+        return Information{app.help()};
+    } catch (const CLI::CallForAllHelp&) {
+        return Information{app.help("", CLI::AppFormatMode::All)};
+    } catch (const CLI::CallForVersion&) {
+        return Information{std::string(kVersion) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        rephrase(error, app, words);
+    }
+    if (app.got_subcommand("warp")) {
+        check(warp.depth);
+        if (warp.shutter > 0 && warp_command->count("--samples") == 0) warp.samples = 8;
+        if (warp.shutter == 0 && warp.samples > 1) throw UserError("--samples: has no meaning without --shutter; give --shutter 0.5");
+        return warp;
+    }
+    if (app.got_subcommand("map")) {
+        check(map.depth);
+        return map;
+    }
+    if (app.got_subcommand("field")) return field;
+    return PresetsOptions{};
+}
+
+}  // namespace eikonal

@@ -1,0 +1,106 @@
+/// What the user asks of `eikonal`, as typed: one struct a command, filled by parse_options and not yet checked against
+/// any file. Defaults are those of an omitted option.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "warp/displace/displacer.h"
+#include "warp/displace/meet.h"
+#include "warp/image/depth_map.h"
+#include "warp/resample/resample.h"
+
+namespace eikonal {
+
+enum class ProgressStyle { Auto, Bar, Plain, None };
+
+/// Which scene, and what is changed in it.
+struct SceneOptions {
+    std::optional<std::filesystem::path> scene;
+    std::optional<std::string> preset;
+    std::vector<std::string> settings;
+    std::optional<std::uint64_t> seed;
+    std::optional<double> fov;
+};
+
+/// Where the picture's objects are. At most one of distance, depth and ground.
+struct DepthArguments {
+    std::optional<double> distance;
+    std::optional<std::string> depth;  ///< FILE[:CHANNEL] or :CHANNEL
+    DepthType type = DepthType::Z;
+    std::optional<std::array<double, 2>> range;
+    std::optional<std::string> ground;  ///< HEIGHT,HORIZON
+    std::optional<double> far;
+    DepthMeeting meeting = DepthMeeting::March;
+};
+
+/// How strong, by which model, and what is written beside the picture.
+struct StrengthOptions {
+    std::optional<std::string> mask;  ///< FILE[:CHANNEL]
+    std::optional<double> rms;
+    double gain = 1;
+    std::optional<Model> model;
+    std::optional<std::filesystem::path> stmap;
+};
+
+/// How the work is done.
+struct RunOptions {
+    std::optional<std::string> frames;
+    int threads = 0;  ///< 0: all processors
+    bool overwrite = false;
+    bool skip_bad_frames = false;
+    bool verbose = false;
+    ProgressStyle progress = ProgressStyle::Auto;
+    std::optional<std::filesystem::path> report;
+};
+
+struct WarpOptions {
+    std::filesystem::path input, output;
+    SceneOptions scene;
+    DepthArguments depth;
+    StrengthOptions strength;
+    RunOptions run;
+    std::optional<std::filesystem::path> displacement;
+    Filter filter = Filter::Cubic;
+    Edge edge = Edge::Mirror;
+    double shutter = 0;
+    int samples = 1;
+    double dispersion = 0;
+    std::string codec;
+    std::optional<double> quality;
+};
+
+struct MapOptions {
+    std::filesystem::path output;
+    SceneOptions scene;
+    DepthArguments depth;
+    StrengthOptions strength;
+    RunOptions run;
+};
+
+struct FieldOptions {
+    std::filesystem::path output;
+    SceneOptions scene;
+    std::optional<double> frame;  ///< left out: the scene's first
+    int medium = 0;
+    RunOptions run;
+};
+
+struct PresetsOptions {};
+
+/// help or version was asked for: print `text` and exit 0.
+struct Information {
+    std::string text;
+};
+
+using Command = std::variant<WarpOptions, MapOptions, FieldOptions, PresetsOptions, Information>;
+
+/// Throws UserError: unknown options (with the nearest valid one), ill-formed values, contradictions.
+Command parse_options(int argc, const char* const* argv);
+
+}  // namespace eikonal

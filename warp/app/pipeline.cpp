@@ -1,0 +1,92 @@
+#include "warp/app/pipeline.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include "noise/error.h"
+#include "warp/app/interrupt.h"
+#include "warp/app/progress.h"
+
+namespace eikonal {
+namespace {
+
+/// Runs a stage; what it throws becomes the frame's error.
+template <class Stage>
+void guarded(FrameRecord& record, Stage&& stage) {
+    try {
+        stage();
+    } catch (const FrameError& error) {
+        record.error = error.what();
+    } catch (const UserError& error) {
+        record.error = error.what();
+    } catch (const std::bad_alloc&) {
+        record.error = "not enough memory";
+    }
+}
+
+}  // namespace
+
+bool RunResult::failed() const {
+    return interrupted || std::any_of(records.begin(), records.end(), [](const FrameRecord& r) { return !r.error.empty(); });
+}
+
+int thread_count(const RunOptions& options) { return options.threads > 0 ? options.threads : tbb::info::default_concurrency(); }
+
+RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads) {
+    RunResult result;
+    Progress progress(options.progress, total, total == 1 ? "frame" : "frames");
+    std::atomic<bool> stop{false};
+    const auto take = [&](tbb::flow_control& flow) -> FrameItem* {
+        if (interrupted()) result.interrupted = true;
+        if (stop || result.interrupted) {
+            flow.stop();
+            return nullptr;
+        }
+        std::unique_ptr<FrameItem> item;
+        FrameRecord failure;
+        guarded(failure, [&] { item = stages.take(); });
+        if (!failure.error.empty()) {
+            item = std::make_unique<FrameItem>();
+            item->record = failure;
+            item->record.frame = stages.failing();
+            if (!options.skip_bad_frames) stop = true;
+        }
+        if (!item) flow.stop();
+        return item.release();
+    };
+    const auto work = [&](FrameItem* item) {
+        const auto start = std::chrono::steady_clock::now();
+        // Isolated: a thread that waits for its frame's rows must not begin another frame meanwhile.
+        if (item->record.error.empty())
+            tbb::this_task_arena::isolate([&] { guarded(item->record, [&] { stages.work(*item); }); });
+        if (!item->record.error.empty() && !options.skip_bad_frames) stop = true;
+        item->record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return item;
+    };
+    bool broken = false;  // a movie cannot go on after a frame that it lacks
+    const auto finish = [&](FrameItem* raw) {
+        const std::unique_ptr<FrameItem> item(raw);
+        FrameRecord& record = item->record;
+        if (record.error.empty() && !broken) guarded(record, [&] { stages.finish(*item); });
+        if (!record.error.empty()) {
+            progress.line(fmt::format("frame {}: {}", record.frame, record.error));
+            if (!options.skip_bad_frames) stop = broken = true;
+        }
+        result.records.push_back(record);
+        progress.step();
+    };
+    tbb::parallel_pipeline(static_cast<std::size_t>(threads + kFramesAhead),
+                           tbb::make_filter<void, FrameItem*>(tbb::filter_mode::serial_in_order, take) &
+                               tbb::make_filter<FrameItem*, FrameItem*>(tbb::filter_mode::parallel, work) &
+                               tbb::make_filter<FrameItem*, void>(tbb::filter_mode::serial_in_order, finish));
+    return result;
+}
+
+}  // namespace eikonal

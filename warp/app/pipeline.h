@@ -1,0 +1,55 @@
+/// Frames through a bounded pipeline: taken in order, worked on in parallel, finished in order. Reading, warping and
+/// writing of different frames overlap; no more than kFramesAhead frames beyond the number of threads are in memory.
+///
+/// A frame that fails is reported as "frame F: reason" and the others go on or, unless skip_bad_frames, no more are begun.
+/// An interrupt ends the run after the frames under way. Nothing already finished is lost either way.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "warp/app/options.h"
+
+namespace eikonal {
+
+inline constexpr int kFramesAhead = 1;
+
+/// What became of one frame.
+struct FrameRecord {
+    int frame = 0;
+    std::string error;  ///< empty: written
+    double rms = 0, largest = 0;  ///< displacement [px]
+    double seconds = 0;           ///< of work
+};
+
+struct RunResult {
+    std::vector<FrameRecord> records;  ///< in order
+    bool interrupted = false;
+    bool failed() const;
+};
+
+/// The three stages. `Item` is a frame on its way, owned by the pipeline.
+struct FrameItem {
+    virtual ~FrameItem() = default;
+    FrameRecord record;
+};
+struct Stages {
+    /// In order, one at a time: makes the next frame's item, with its record's frame set; null at the end. May throw
+    /// FrameError, which counts against the frame that `failing` then names.
+    std::function<std::unique_ptr<FrameItem>()> take;
+    std::function<int()> failing;
+    /// In parallel. May throw.
+    std::function<void(FrameItem&)> work;
+    /// In order, one at a time; not called for failed frames. May throw.
+    std::function<void(FrameItem&)> finish;
+};
+
+RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads);
+
+/// Number of threads that a run uses: --threads or all processors.
+int thread_count(const RunOptions& options);
+
+}  // namespace eikonal

@@ -1,0 +1,38 @@
+/// Progress on stderr: a bar with the time left on a terminal, a plain line now and then otherwise.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <mutex>
+#include <string>
+
+#include "warp/app/options.h"
+
+namespace eikonal {
+
+class Progress {
+  public:
+    Progress(ProgressStyle style, std::size_t total, std::string what);
+    /// Ends the bar's line.
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// One more of `total` is done. Thread-safe.
+    void step();
+    /// Prints a line (a warning, a failure) without tearing the bar. Thread-safe.
+    void line(const std::string& text);
+
+  private:
+    void draw(bool last);
+
+    using Clock = std::chrono::steady_clock;
+    ProgressStyle style_;
+    std::size_t total_, done_ = 0;
+    std::string what_;
+    Clock::time_point start_, drawn_;
+    bool on_screen_ = false;
+    std::mutex lock_;
+};
+
+}  // namespace eikonal

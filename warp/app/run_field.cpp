@@ -1,0 +1,181 @@
+/// `eikonal field`: slices of the refractive field of one medium, for analysis. And the two commands that only print.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "noise/error.h"
+#include "noise/gradient_noise.h"
+#include "noise/lattice_snapshot.h"
+#include "noise/screens.h"
+#include "warp/app/commands.h"
+#include "warp/app/interrupt.h"
+#include "warp/app/outputs.h"
+#include "warp/app/pipeline.h"
+#include "warp/app/progress.h"
+#include "warp/app/shot.h"
+
+namespace eikonal {
+namespace {
+
+constexpr int kChannels = 4;
+/// Slices of gradient noise, which has no lattice of its own, unless the scene states `lattice`.
+constexpr int kNoiseSamples = 64;
+constexpr double kDefaultFps = 24;
+
+/// The z-slices of a field: how many, of what size, and what one holds.
+struct Slices {
+    int count = 0, width = 0, height = 0;
+    std::function<void(int slice, std::vector<float>& interleaved)> fill;  ///< n, F.x, F.y, F.z a sample
+    std::vector<Attribute> attributes;
+    std::function<double(int slice)> position;  ///< z of a slice [m]
+};
+
+void describe(Slices& slices, const std::array<double, 4>& period, const std::array<double, 3>& spacing, double t) {
+    for (int i = 0; i < 4; ++i) slices.attributes.emplace_back(fmt::format("eikonal/period.{}", "xyzt"[i]), period[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i) slices.attributes.emplace_back(fmt::format("eikonal/spacing.{}", "xyz"[i]), spacing[static_cast<std::size_t>(i)]);
+    slices.attributes.emplace_back("eikonal/time", t);
+}
+
+Slices lattice_slices(const TurbulenceSpec& spec, double t, double exaggeration, double force_factor) {
+    const LatticeGeometry g = choose_lattice(spec);
+    check_lattice(spec, g, std::numeric_limits<std::uint64_t>::max());
+    const LatticeField field(spec, g);
+    auto nodes = std::make_shared<std::array<FftVector<float>, kChannels>>();
+    constexpr std::array kComponents{Component::Index, Component::ForceX, Component::ForceY, Component::ForceZ};
+    for (std::size_t c = 0; c < kChannels; ++c) (*nodes)[c] = node_field(field, t, kComponents[c]);
+    Slices slices{g.size[2], g.size[0], g.size[1], {}, {}, [g](int z) { return z * g.spacing(2); }};
+    slices.fill = [=](int z, std::vector<float>& out) {
+        for (int row = 0; row < g.size[1]; ++row)
+            for (int x = 0; x < g.size[0]; ++x) {
+                const int y = g.size[1] - 1 - row;  // y up: the last row of nodes is on top
+                const auto node = (static_cast<std::size_t>(x) * static_cast<std::size_t>(g.size[1]) + static_cast<std::size_t>(y)) *
+                                      static_cast<std::size_t>(g.size[2]) + static_cast<std::size_t>(z);
+                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(g.size[0]) + static_cast<std::size_t>(x))];
+                for (std::size_t c = 0; c < kChannels; ++c)
+                    pixel[c] = (*nodes)[c][node] * static_cast<float>(c == 0 ? exaggeration : force_factor);
+            }
+    };
+    describe(slices, g.period, {g.spacing(0), g.spacing(1), g.spacing(2)}, t);
+    return slices;
+}
+
+Slices noise_slices(const TurbulenceSpec& spec, double t, double exaggeration, double force_factor) {
+    auto field = std::make_shared<const GradientNoiseField>(spec);
+    const std::array<int, 4> size = spec.lattice.value_or(std::array{kNoiseSamples, kNoiseSamples, kNoiseSamples, 1});
+    const double side = 2 * spec.outer_scale;
+    const std::array<double, 4> period = spec.period.value_or(std::array{side, side, side, 0.0});
+    const std::array spacing{period[0] / size[0], period[1] / size[1], period[2] / size[2]};
+    Slices slices{size[2], size[0], size[1], {}, {}, [spacing](int z) { return z * spacing[2]; }};
+    slices.fill = [=](int z, std::vector<float>& out) {
+        tbb::parallel_for(0, size[1], [&](int row) {
+            for (int x = 0; x < size[0]; ++x) {
+                const IndexSample s = field->sample({x * spacing[0], (size[1] - 1 - row) * spacing[1], z * spacing[2]}, t);
+                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(size[0]) + static_cast<std::size_t>(x))];
+                pixel[0] = static_cast<float>(exaggeration * s.n);
+                for (int c = 0; c < 3; ++c) pixel[c + 1] = static_cast<float>(force_factor * s.gradient[c]);
+            }
+        });
+    };
+    describe(slices, {0, 0, 0, 0}, spacing, t);  // no period
+    return slices;
+}
+
+/// A screen is one slice: n and F averaged over its slab, in the lateral axes of the camera (F.z = 0).
+Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, double exaggeration, double force_factor) {
+    const std::array<int, 2> resolution = scene.camera.resolution.value_or(std::array{1920, 1080});
+    const Camera camera = CameraPath(scene.camera, resolution[0], resolution[1]).reference();
+    const ScreenView view{camera.projection == Projection::Perspective, DepthInput({}, scene.plate).far(),
+                          0.5 * resolution[0] / camera.f_px, 0.5 * resolution[1] / camera.f_px, 1 / camera.f_px, scene.optics.aperture,
+                          scene.time.fps.value_or(kDefaultFps)};
+    const std::vector<ScreenGeometry> geometry = layout_screens(spec, view);
+    check_screens(spec, geometry, std::numeric_limits<std::uint64_t>::max());
+    auto screens = std::make_shared<const std::vector<ScreenSnapshot>>(ScreenField(spec, geometry, camera.right, camera.up).at(t));
+    int width = 0, height = 0;
+    for (const ScreenGeometry& g : geometry) {
+        width = std::max(width, g.nx);
+        height = std::max(height, g.ny);
+    }
+    Slices slices{static_cast<int>(geometry.size()), width, height, {}, {}, [geometry](int m) { return geometry[static_cast<std::size_t>(m)].w; }};
+    slices.fill = [=](int m, std::vector<float>& out) {
+        const ScreenGeometry& g = geometry[static_cast<std::size_t>(m)];
+        tbb::parallel_for(0, height, [&](int row) {
+            for (int x = 0; x < width; ++x) {
+                const auto s = (*screens)[static_cast<std::size_t>(m)].sample(x * g.Lx / g.nx, (height - 1 - row) * g.Ly / g.ny);
+                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))];
+                pixel[0] = static_cast<float>(exaggeration * double{s.value} / g.thickness);
+                pixel[1] = static_cast<float>(force_factor * double{s.dx} / g.thickness);
+                pixel[2] = static_cast<float>(force_factor * double{s.dy} / g.thickness);
+                pixel[3] = 0;
+            }
+        });
+    };
+    const ScreenGeometry& g = geometry.front();
+    describe(slices, {g.Lx, g.Ly, 0, g.T}, {g.Lx / g.nx, g.Ly / g.ny, g.thickness}, t);
+    return slices;
+}
+
+Slices make_slices(const FieldOptions& options, const Scene& scene) {
+    if (static_cast<std::size_t>(options.medium) >= scene.media.size())
+        throw UserError(fmt::format("--medium {}: the scene has {} medi{}, counted from 0", options.medium, scene.media.size(),
+                                    scene.media.size() == 1 ? "um" : "a"));
+    const auto* spec = std::get_if<TurbulenceSpec>(&scene.media[static_cast<std::size_t>(options.medium)]);
+    if (spec == nullptr)
+        throw UserError(fmt::format("--medium {}: is not turbulence; field writes media of type \"turbulence\"", options.medium));
+    const double t = (options.frame.value_or(scene.time.first_frame) - scene.time.first_frame) / scene.time.fps.value_or(kDefaultFps);
+    const double exaggeration = scene.optics.exaggeration;
+    const double force = exaggeration * (scene.optics.ray_equation == RayEquation::Paper ? 0.5 : 1.0);
+    switch (spec->form) {
+        case TurbulenceForm::Lattice: return lattice_slices(*spec, t, exaggeration, force);
+        case TurbulenceForm::GradientNoise: return noise_slices(*spec, t, exaggeration, force);
+        case TurbulenceForm::Screens: break;
+    }
+    return screen_slices(*spec, t, scene, exaggeration, force);
+}
+
+}  // namespace
+
+int run(const FieldOptions& options) {
+    const int threads = thread_count(options.run);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    set_image_threads(threads);
+    const Scene scene = load_scene(options.scene);
+    Outputs outputs;
+    outputs.add("-o", options.output, false);
+    const Slices slices = make_slices(options, scene);
+    std::vector<int> numbers(static_cast<std::size_t>(slices.count));
+    for (int i = 0; i < slices.count; ++i) numbers[static_cast<std::size_t>(i)] = i;
+    outputs.check(numbers, {});
+    if (options.run.verbose)
+        fmt::print(stderr, "eikonal: {} slices of {} x {} samples\n", slices.count, slices.width, slices.height);
+
+    static const std::vector<std::string> kNames{"n", "F.x", "F.y", "F.z"};
+    const PixelWindow window{0, 0, slices.width, slices.height};
+    std::vector<float> values(kChannels * window.area());
+    Progress progress(options.run.progress, numbers.size(), "slices");
+    for (const int slice : numbers) {
+        if (interrupted()) throw FrameError(fmt::format("interrupted after {} of {} slices; the same command goes on", slice, slices.count));
+        if (options.run.overwrite || !outputs.finished(slice)) {
+            slices.fill(slice, values);
+            std::vector<Attribute> attributes = slices.attributes;
+            attributes.emplace_back("eikonal/z", slices.position(slice));
+            write_float_exr(outputs.find("-o")->at(slice), window, window, kNames, values, attributes);
+        }
+        progress.step();
+    }
+    return 0;
+}
+
+int run(const PresetsOptions&) {
+    for (const Preset& preset : list_presets()) fmt::print("{:<14} {}\n", preset.name, preset.description);
+    return 0;
+}
+
+int run(const Information& information) {
+    fmt::print("{}", information.text);
+    return 0;
+}
+
+}  // namespace eikonal

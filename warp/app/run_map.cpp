@@ -1,0 +1,84 @@
+/// `eikonal map`: displacement maps without any footage.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include "noise/error.h"
+#include "warp/app/commands.h"
+#include "warp/app/outputs.h"
+#include "warp/app/pipeline.h"
+#include "warp/app/report.h"
+#include "warp/app/shot.h"
+
+namespace eikonal {
+namespace {
+
+constexpr int kDefaultWidth = 1920, kDefaultHeight = 1080;
+
+/// Resolution: the scene's, else that of the depth map's first frame, else 1920 x 1080.
+PixelWindow choose_display(const Scene& scene, const DepthArguments& depth, int frame) {
+    if (scene.camera.resolution) return {0, 0, (*scene.camera.resolution)[0], (*scene.camera.resolution)[1]};
+    if (depth.depth)
+        if (const FileChannel split = split_channel(*depth.depth); !split.file.empty())
+            return display_window(read_picture_header(FilePattern::parse(split.file).at(frame)).parts.front());
+    return {0, 0, kDefaultWidth, kDefaultHeight};
+}
+
+}  // namespace
+
+int run(const MapOptions& options) {
+    const int threads = thread_count(options.run);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    set_image_threads(threads);
+
+    Scene scene = load_scene(options.scene);
+    Outputs outputs;
+    outputs.add("-o", options.output, false);
+    if (options.strength.stmap) outputs.add("--stmap", *options.strength.stmap, false);
+    if (options.depth.depth && options.depth.depth->starts_with(':'))
+        throw UserError(fmt::format("--depth {}: map has no INPUT whose channel it could be; name a file", *options.depth.depth));
+    std::vector<int> frames = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{scene.time.first_frame};
+    const PixelWindow display = choose_display(scene, options.depth, frames.front());
+    const Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {});
+    std::vector<FilePattern> inputs;
+    if (shot.depth().files()) inputs.push_back(*shot.depth().files());
+    outputs.check(frames, inputs);
+    if (options.run.verbose)
+        for (const std::string& note : shot.notes()) fmt::print(stderr, "eikonal: {}\n", note);
+    for (const std::string& warning : shot.displacer().warnings()) fmt::print(stderr, "eikonal: warning: {}\n", warning);
+    const std::size_t asked = frames.size();
+    if (!options.run.overwrite) std::erase_if(frames, [&](int frame) { return outputs.finished(frame); });
+    const std::size_t kept = asked - frames.size();
+    if (kept > 0)
+        fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept, kept == 1 ? " is" : "s are");
+    if (kept > 0 && frames.empty()) return 0;
+    if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
+
+    std::size_t next = 0;
+    const Stages stages{
+        [&]() -> std::unique_ptr<FrameItem> {
+            if (next == frames.size()) return nullptr;
+            auto item = std::make_unique<FrameItem>();
+            item->record.frame = frames[next++];
+            return item;
+        },
+        [] { return 0; },
+        [&](FrameItem& item) {
+            const int frame = item.record.frame;
+            const DisplacementMap map = std::move(shot.maps(frame, {0}, nullptr, {}, display).front());
+            const MapStatistics size = statistics(map);
+            item.record.rms = size.rms;
+            item.record.largest = size.largest;
+            if (const Output* stmap = outputs.find("--stmap")) write_stmap(stmap->at(frame), map, display);
+            write_displacement(outputs.find("-o")->at(frame), map, display);
+        },
+        [](FrameItem&) {}};
+    const RunResult result = run_pipeline(stages, options.run, frames.size(), threads);
+    if (options.run.report) write_report(*options.run.report, shot, result, kept);
+    if (result.interrupted)
+        fmt::print(stderr, "eikonal: interrupted after {} of {} frames; the same command goes on where this one stopped\n",
+                   result.records.size(), frames.size());
+    return result.failed() ? 1 : 0;
+}
+
+}  // namespace eikonal

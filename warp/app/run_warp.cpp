@@ -1,0 +1,246 @@
+/// `eikonal warp`: footage in, shimmering footage out.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+#include "noise/error.h"
+#include "warp/app/commands.h"
+#include "warp/app/footage.h"
+#include "warp/app/outputs.h"
+#include "warp/app/pipeline.h"
+#include "warp/app/report.h"
+#include "warp/app/shot.h"
+#include "warp/image/movie_writer.h"
+
+namespace eikonal {
+namespace {
+
+/// A plate on its way through the pipeline.
+struct PlateItem : FrameItem {
+    Plate plate;                        ///< empty picture until work() reads it, but for movies
+    std::optional<MovieFrame> encoded;  ///< for a movie output
+};
+
+/// Frames to warp: the user's list, or all there are.
+std::vector<int> choose_frames(const WarpOptions& options, const Footage& footage, int first_frame, bool& hole) {
+    std::vector<int> frames = options.run.frames ? parse_frames(*options.run.frames) : footage.frames;
+    if (footage.kind == FootageKind::Still) return options.run.frames ? frames : std::vector<int>{first_frame};
+    if (footage.kind == FootageKind::Movie) {
+        std::sort(frames.begin(), frames.end());
+        const auto last = static_cast<int>(footage.frames.size());
+        if (options.run.frames && (frames.front() < 1 || (last > 0 && frames.back() > last)))
+            throw UserError(fmt::format("--frames {}: '{}' has frames 1 to {}", *options.run.frames, options.input.string(), last));
+        return frames;
+    }
+    std::vector<int> missing;
+    if (options.run.frames) {
+        std::error_code ignored;
+        for (const int frame : frames)
+            if (!std::filesystem::exists(footage.files.at(frame), ignored)) missing.push_back(frame);
+    } else {
+        missing = missing_frames(frames);
+    }
+    if (missing.empty()) return frames;
+    hole = true;
+    const std::string what = fmt::format("'{}' lacks frame{} {}", options.input.string(), missing.size() == 1 ? "" : "s", frame_list(missing));
+    if (!options.run.skip_bad_frames)
+        throw FrameError(what + "; --skip-bad-frames goes on without, --frames names those to make");
+    fmt::print(stderr, "eikonal: warning: {}\n", what);
+    std::erase_if(frames, [&](int f) { return std::find(missing.begin(), missing.end(), f) != missing.end(); });
+    return frames;
+}
+
+/// Instants of a shutter that is centred on the frame.
+std::vector<double> shutter_offsets(const WarpOptions& options) {
+    std::vector<double> offsets;
+    for (int i = 0; i < options.samples; ++i) offsets.push_back(options.shutter * ((i + 0.5) / options.samples - 0.5));
+    return offsets;
+}
+
+class WarpRun {
+  public:
+    WarpRun(const WarpOptions& options, const Footage& footage, const Shot& shot, const Outputs& outputs, std::vector<int> frames)
+        : options_(options), footage_(footage), shot_(shot), outputs_(outputs), frames_(std::move(frames)),
+          offsets_(shutter_offsets(options)), output_(*outputs.find("-o")) {
+        if (footage.kind == FootageKind::Movie) {
+            reader_.emplace(options.input);
+        } else if (footage.kind == FootageKind::Still) {
+            still_ = read_picture(options.input);
+        }
+        if (output_.movie) open_movie();
+    }
+
+    std::unique_ptr<FrameItem> take() {
+        // a movie whose length its container hides is read to its end
+        const bool open_ended = reader_ && frames_.empty();
+        if (!open_ended && next_ == frames_.size()) return nullptr;
+        auto item = std::make_unique<PlateItem>();
+        if (reader_) {
+            failing_ = reader_->next_number();
+            if (!open_ended) {
+                const int wanted = frames_[next_++];
+                while (reader_->next_number() < wanted && reader_->skip()) {}
+                failing_ = wanted;
+            }
+            MovieFrame frame;
+            if (!reader_->next(frame)) {
+                if (open_ended) return nullptr;
+                throw FrameError(fmt::format("'{}' ends before this frame", options_.input.string()));
+            }
+            item->record.frame = frame.number;
+            item->plate = std::move(frame);
+        } else {
+            item->record.frame = frames_[next_++];
+        }
+        return item;
+    }
+    int failing() const { return failing_; }
+
+    void work(FrameItem& base) {
+        auto& item = static_cast<PlateItem&>(base);
+        const int frame = item.record.frame;
+        const std::filesystem::path file = footage_.files.at(frame);
+        if (footage_.kind == FootageKind::Still) item.plate = still_;
+        if (footage_.kind == FootageKind::Sequence) item.plate = read_picture(file);
+        const PixelWindow display = plate_display(item.plate);
+        if (display.width != footage_.display.width || display.height != footage_.display.height)
+            throw FrameError(fmt::format("'{}' is {} x {}, but the shot is {} x {}; all frames of a shot must have one size", file.string(),
+                                         display.width, display.height, footage_.display.width, footage_.display.height));
+        const auto* picture = std::get_if<Picture>(&item.plate);
+        const std::vector<DisplacementMap> maps =
+            shot_.maps(frame, offsets_, picture, picture != nullptr ? file : options_.input, plate_window(item.plate));
+        const DisplacementMap& middle = maps[maps.size() / 2];
+        const MapStatistics size = statistics(middle);
+        item.record.rms = size.rms;
+        item.record.largest = size.largest;
+        if (const Output* stmap = outputs_.find("--stmap")) write_stmap(stmap->at(frame), middle, display);
+        if (const Output* displacement = outputs_.find("--displacement")) write_displacement(displacement->at(frame), middle, display);
+        warp_plate(item.plate, maps, {options_.filter, options_.edge, options_.dispersion});
+        if (output_.movie) {
+            if (picture == nullptr) item.encoded = std::move(std::get<MovieFrame>(item.plate));
+            else item.encoded = frame_from_linear(main_colour(item.plate), *movie_format_, main_is_grey(*picture));
+            item.plate = Picture{};
+            return;
+        }
+        write_still(item.plate, output_.at(frame));
+    }
+
+    void finish(FrameItem& base) {
+        if (writer_) writer_->write(*static_cast<PlateItem&>(base).encoded);
+    }
+
+    /// Names the movie, if all went well.
+    void close() {
+        if (writer_) writer_->finish();
+    }
+
+  private:
+    static bool main_is_grey(const Picture& picture) {
+        for (const ChannelGroup& group : main_part(picture).groups)
+            if (group.count > 0) return group.count == 1;
+        return false;
+    }
+
+    void write_still(Plate& plate, const std::filesystem::path& file) const {
+        if (auto* picture = std::get_if<Picture>(&plate))
+            write_picture(file, picture_for_format(std::move(*picture), file));
+        else
+            write_picture(file, picture_from_linear(main_colour(plate), file, footage_.has_alpha, footage_.source_bits));
+    }
+
+    void open_movie() {
+        MovieSettings settings;
+        settings.codec = options_.codec;
+        settings.quality = options_.quality;
+        settings.warn = [](const std::string& text) { fmt::print(stderr, "eikonal: warning: {}\n", text); };
+        const std::filesystem::path& file = output_.files.text();
+        if (reader_) {
+            if (options_.run.frames) settings.frames = frames_;
+            writer_.emplace(file, *reader_, settings);
+            return;
+        }
+        movie_format_ = sequence_format(file, footage_.display.width, footage_.display.height, footage_.source_bits,
+                                        footage_.pixel_aspect, options_.codec);
+        Rational fps{static_cast<std::int64_t>(shot_.fps() * 1000 + 0.5), 1000};
+        if (footage_.fps && !shot_.scene().time.fps) fps = *footage_.fps;
+        writer_.emplace(file, *movie_format_, fps, settings);
+    }
+
+    const WarpOptions& options_;
+    const Footage& footage_;
+    const Shot& shot_;
+    const Outputs& outputs_;
+    std::vector<int> frames_;
+    std::vector<double> offsets_;
+    const Output& output_;
+    std::optional<MovieReader> reader_;
+    std::optional<MovieWriter> writer_;
+    std::optional<MovieFormat> movie_format_;
+    Picture still_;
+    std::size_t next_ = 0;
+    int failing_ = 0;
+};
+
+void print_lines(const std::vector<std::string>& lines, const char* prefix) {
+    for (const std::string& line : lines) fmt::print(stderr, "eikonal: {}{}\n", prefix, line);
+}
+
+}  // namespace
+
+int run(const WarpOptions& options) {
+    const int threads = thread_count(options.run);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    set_image_threads(threads);
+
+    Scene scene = load_scene(options.scene);
+    Outputs outputs;
+    outputs.add("-o", options.output, true);
+    if (options.strength.stmap) outputs.add("--stmap", *options.strength.stmap, false);
+    if (options.displacement) outputs.add("--displacement", *options.displacement, false);
+    const Footage footage = find_footage(options.input);
+    print_lines(footage.notes, "warning: ");
+    bool hole = false;
+    std::vector<int> frames = choose_frames(options, footage, scene.time.first_frame, hole);
+    const Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
+                    footage.fps ? std::optional(footage.fps->value()) : std::nullopt);
+    std::vector<FilePattern> inputs{footage.files};
+    if (shot.depth().files()) inputs.push_back(*shot.depth().files());
+    outputs.check(frames, inputs);
+    if (options.run.verbose) print_lines(shot.notes(), "");
+    print_lines(shot.displacer().warnings(), "warning: ");
+
+    std::size_t kept = 0;
+    if (!options.run.overwrite) {
+        const std::size_t before = frames.size();
+        if (outputs.find("-o")->movie) {
+            std::error_code ignored;
+            if (std::filesystem::exists(options.output, ignored)) {
+                fmt::print(stderr, "eikonal: '{}' is already there and kept; --overwrite makes it anew\n", options.output.string());
+                return hole ? 1 : 0;
+            }
+        } else {
+            std::erase_if(frames, [&](int frame) { return outputs.finished(frame); });
+        }
+        kept = before - frames.size();
+        if (kept > 0)
+            fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept, kept == 1 ? " is" : "s are");
+        if (kept > 0 && frames.empty()) return hole ? 1 : 0;
+    }
+    if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
+
+    WarpRun warp(options, footage, shot, outputs, frames);
+    const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); }, [&](FrameItem& item) { warp.work(item); },
+                        [&](FrameItem& item) { warp.finish(item); }};
+    const RunResult result = run_pipeline(stages, options.run, frames.size(), threads);
+    const bool complete = !result.interrupted && (options.run.skip_bad_frames || !result.failed());
+    if (complete) warp.close();
+    if (options.run.report) write_report(*options.run.report, shot, result, kept);
+    if (result.interrupted)
+        fmt::print(stderr, "eikonal: interrupted after {} of {} frames; {}\n", result.records.size(), frames.size(),
+                   outputs.find("-o")->movie ? "the movie was not written" : "the same command goes on where this one stopped");
+    return result.failed() || hole ? 1 : 0;
+}
+
+}  // namespace eikonal

@@ -1,0 +1,136 @@
+#include "warp/app/shot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "noise/error.h"
+#include "warp/image/plane.h"
+
+namespace eikonal {
+
+Scene load_scene(const SceneOptions& options) {
+    const std::filesystem::path file = options.scene ? *options.scene : find_preset(options.preset.value_or("gentle"));
+    return read_scene(file, options.settings, options.seed);
+}
+
+Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments& depth, const StrengthOptions& strength,
+           const PixelWindow& display, double pixel_aspect, std::optional<double> fps)
+    : scene_(std::move(scene)),
+      depth_(depth, scene_.plate),
+      meeting_(depth.meeting),
+      display_(display),
+      fps_(scene_.time.fps.value_or(fps.value_or(24))) {
+    DisplacerSettings settings;
+    settings.width = display.width;
+    settings.height = display.height;
+    settings.pixel_aspect = pixel_aspect;
+    settings.fps = fps_;
+    settings.fov = scene_options.fov;
+    settings.far = depth_.far();
+    settings.model = strength.model;
+    displacer_ = std::make_unique<Displacer>(scene_, settings);
+    const double natural = displacer_->expected_rms(depth_.far());
+    gain_ = strength.gain;
+    if (strength.rms) {
+        if (natural == 0 && *strength.rms > 0)
+            throw UserError(fmt::format("--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength (cn2)",
+                                        *strength.rms));
+        gain_ = natural > 0 ? gain_ * *strength.rms / natural : 0;
+    }
+    expected_rms_ = natural * gain_;
+    if (strength.mask) {
+        const FileChannel split = split_channel(*strength.mask);
+        if (split.file.empty()) throw UserError(fmt::format("--mask: '{}' names no file; give FILE or FILE:CHANNEL", *strength.mask));
+        mask_ = FilePattern::parse(split.file);
+        mask_channel_ = split.channel;
+    }
+}
+
+std::vector<std::string> Shot::notes() const {
+    std::vector<std::string> lines;
+    lines.push_back(fmt::format("scene: {}", scene_.file.empty() ? "none" : scene_.file.filename().string()));
+    lines.push_back("depth: " + depth_.description());
+    for (const std::string& note : displacer_->notes()) lines.push_back(note);
+    lines.push_back(fmt::format("displacement: {:.3g} px rms expected at {:g} m, gain {:.4g}", expected_rms_, depth_.far(), gain_));
+    if (const double focusing = displacer_->focusing_variance(depth_.far()); focusing > 0)
+        lines.push_back(fmt::format("focusing variance at {:g} m: {:.3g} (rays begin to fold near 1)", depth_.far(), focusing));
+    return lines;
+}
+
+std::optional<std::string> Shot::missing_companion(const std::vector<int>& frames) const {
+    std::error_code ignored;
+    const auto check = [&](const std::optional<FilePattern>& files, const char* what) -> std::optional<std::string> {
+        if (!files) return {};
+        for (const int frame : frames) {
+            const std::filesystem::path file = files->at(frame);
+            if (!std::filesystem::exists(file, ignored))
+                return fmt::format("frame {}: the {} '{}' does not exist; it must have every frame that is warped (--frames names fewer)",
+                                   frame, what, file.string());
+        }
+        return {};
+    };
+    if (auto missing = check(depth_.files(), "depth map")) return missing;
+    return check(mask_, "mask");
+}
+
+std::vector<DisplacementMap> Shot::maps(int frame, const std::vector<double>& offsets, const Picture* input,
+                                        const std::filesystem::path& input_file, const PixelWindow& window) const {
+    std::optional<DepthPlane> plane;
+    double nearest = depth_.far(), farthest = depth_.far();
+    DepthSource source = depth_.constant().value_or(0);
+    if (!depth_.constant()) {
+        plane.emplace(depth_.plane(frame, input, input_file, window, display_, displacer_->camera(frame)));
+        nearest = plane->nearest();
+        farthest = plane->farthest();
+        source = &*plane;
+    } else {
+        nearest = farthest = *depth_.constant();
+    }
+    std::vector<float> mask;
+    if (mask_) mask = read_matte(mask_->at(frame), mask_channel_, window, display_);
+    std::vector<DisplacementMap> result;
+    for (const double offset : offsets) {
+        DisplacementMap map{window, std::vector<float>(2 * window.area())};
+        if (gain_ != 0) displacer_->at(frame + offset, nearest, farthest).map(window, source, meeting_, gain_, map.uv.data());
+        for (std::size_t i = 0; i < mask.size(); ++i) {
+            map.uv[2 * i] *= mask[i];
+            map.uv[2 * i + 1] *= mask[i];
+        }
+        result.push_back(std::move(map));
+    }
+    return result;
+}
+
+MapStatistics statistics(const DisplacementMap& map) {
+    double sum = 0, largest = 0;
+    for (std::size_t i = 0; i < map.uv.size(); i += 2) {
+        const double d2 = double{map.uv[i]} * map.uv[i] + double{map.uv[i + 1]} * map.uv[i + 1];
+        sum += d2;
+        largest = std::max(largest, d2);
+    }
+    return {std::sqrt(sum / (0.5 * static_cast<double>(std::max<std::size_t>(map.uv.size(), 2)))), std::sqrt(largest)};
+}
+
+void write_displacement(const std::filesystem::path& file, const DisplacementMap& map, const PixelWindow& display) {
+    static const std::vector<std::string> names{"u", "v"};
+    write_float_exr(file, map.window, display, names, map.uv);
+}
+
+void write_stmap(const std::filesystem::path& file, const DisplacementMap& map, const PixelWindow& display) {
+    static const std::vector<std::string> names{"R", "G", "B"};
+    std::vector<float> st(3 * map.window.area());
+    for (int row = 0; row < map.window.height; ++row)
+        for (int column = 0; column < map.window.width; ++column) {
+            const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(map.window.width) + static_cast<std::size_t>(column);
+            const double x = map.window.x0 - display.x0 + column + 0.5 + double{map.uv[2 * i]};
+            const double y = map.window.y0 - display.y0 + row + 0.5 + double{map.uv[2 * i + 1]};
+            st[3 * i] = static_cast<float>(x / display.width);
+            st[3 * i + 1] = static_cast<float>(1 - y / display.height);
+            st[3 * i + 2] = 1;
+        }
+    write_float_exr(file, map.window, display, names, st);
+}
+
+}  // namespace eikonal

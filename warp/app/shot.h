@@ -1,0 +1,64 @@
+/// A shot made ready: scene read, camera, depth and displacement settled, gain fixed. What `warp` and `map` share.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "warp/app/depth_input.h"
+#include "warp/app/footage.h"
+#include "warp/app/options.h"
+#include "warp/app/warp_plate.h"
+#include "warp/displace/displacer.h"
+
+namespace eikonal {
+
+/// The scene that the options name: a file, a preset, or the preset `gentle`.
+Scene load_scene(const SceneOptions& options);
+
+class Shot {
+  public:
+    /// display, pixel_aspect: of the footage. fps: the footage's own, which the scene's overrides.
+    Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments& depth, const StrengthOptions& strength,
+         const PixelWindow& display, double pixel_aspect, std::optional<double> fps);
+
+    const Scene& scene() const { return scene_; }
+    const DepthInput& depth() const { return depth_; }
+    const Displacer& displacer() const { return *displacer_; }
+    double gain() const { return gain_; }
+    double fps() const { return fps_; }
+    /// Expected rms of |d| at far(), gain included [px].
+    double expected_rms() const { return expected_rms_; }
+    /// Lines for --verbose: scene, depth, media, strength.
+    std::vector<std::string> notes() const;
+
+    /// Maps of the instants at frame + offsets, on `window`, masked. `input`: the frame's picture or null.
+    std::vector<DisplacementMap> maps(int frame, const std::vector<double>& offsets, const Picture* input,
+                                      const std::filesystem::path& input_file, const PixelWindow& window) const;
+
+    /// Frames among `frames` whose depth map or matte is missing, with the first missing file's name.
+    std::optional<std::string> missing_companion(const std::vector<int>& frames) const;
+
+  private:
+    Scene scene_;
+    DepthInput depth_;
+    DepthMeeting meeting_;
+    PixelWindow display_;
+    double fps_;
+    std::unique_ptr<Displacer> displacer_;
+    double gain_ = 1, expected_rms_ = 0;
+    std::optional<FilePattern> mask_;
+    std::string mask_channel_;
+};
+
+/// Size of a map, for the report.
+struct MapStatistics {
+    double rms = 0, largest = 0;  ///< of |d| [px]
+};
+MapStatistics statistics(const DisplacementMap& map);
+
+/// Writes channels u, v in pixels, or the STMap R = (x + dx + 0.5)/width, G = 1 - (y + dy + 0.5)/height, B = 1.
+void write_displacement(const std::filesystem::path& file, const DisplacementMap& map, const PixelWindow& display);
+void write_stmap(const std::filesystem::path& file, const DisplacementMap& map, const PixelWindow& display);
+
+}  // namespace eikonal

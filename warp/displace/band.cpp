@@ -1,0 +1,202 @@
+#include "warp/displace/band.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "noise/dispatch.h"
+
+namespace eikonal {
+namespace {
+
+constexpr int kBefore = 2, kTaps = 6;  // nodes i-2 … i+3 around position i + f
+
+using Weights = std::array<float, kTaps>;
+
+int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+/// Six-point Lagrange weights at fraction f in [0, 1) between nodes 2 and 3.
+Weights lagrange(double f) {
+    Weights w{};
+    for (int i = 0; i < kTaps; ++i) {
+        double v = 1;
+        for (int j = 0; j < kTaps; ++j)
+            if (j != i) v *= (f - (j - kBefore)) / (i - j);
+        w[static_cast<std::size_t>(i)] = static_cast<float>(v);
+    }
+    return w;
+}
+
+Node splat(float a) { return Node{a, a, a, a}; }
+
+EIKONAL_CLONES void weighted_lines(const Node* in, std::size_t stride, std::size_t n, const Weights& w, Node* out) {
+    for (std::size_t i = 0; i < n; ++i)
+        out[i] = splat(w[0]) * in[i] + splat(w[1]) * in[i + stride] + splat(w[2]) * in[i + 2 * stride] +
+                 splat(w[3]) * in[i + 3 * stride] + splat(w[4]) * in[i + 4 * stride] + splat(w[5]) * in[i + 5 * stride];
+}
+
+/// The two layers around z and how to mix them: X = a·lower + b·upper, where a and b act on (X, S) of a node.
+struct Mix {
+    std::size_t lower, upper;
+    float x_lower, s_lower, x_upper, s_upper;
+};
+
+Mix mix_at(const Band& band, double z) {
+    const auto& depths = band.depths;
+    const std::size_t last = depths.size() - 1;
+    const double divisor = band.perspective ? z : 1.0;
+    const auto scaled = [&](double v) { return static_cast<float>(v / divisor); };
+    if (z == depths.front() || depths.size() == 1) {
+        if (z <= depths[0]) return {0, 0, scaled(z / depths[0]), 0, 0, 0};
+        return {0, 0, scaled(1), scaled(z - depths[0]), 0, 0};
+    }
+    if (z < depths.front()) return {0, 0, scaled(z / depths[0]), 0, 0, 0};
+    if (z >= depths[last]) return {last, last, scaled(1), scaled(z - depths[last]), 0, 0};
+    const auto upper = static_cast<std::size_t>(std::upper_bound(depths.begin(), depths.end(), z) - depths.begin());
+    const std::size_t lower = upper - 1;
+    const double length = depths[upper] - depths[lower];
+    const double t = (z - depths[lower]) / length;
+    if (band.interpolation == DepthInterpolation::Linear) return {lower, upper, scaled(1 - t), 0, scaled(t), 0};
+    const double t2 = t * t, t3 = t2 * t;
+    return {lower,
+            upper,
+            scaled(2 * t3 - 3 * t2 + 1),
+            scaled((t3 - 2 * t2 + t) * length),
+            scaled(-2 * t3 + 3 * t2),
+            scaled((t3 - t2) * length)};
+}
+
+}  // namespace
+
+int node_spacing(double cell_px) {
+    const double widest = std::min(kCellsPerNode * cell_px, static_cast<double>(kWidestSpacing));
+    int spacing = 1;
+    while (2 * spacing <= widest) spacing *= 2;
+    return spacing;
+}
+
+void Band::scale(float gain) {
+    if (gain == 1) return;
+    for (Node& node : nodes) node *= splat(gain);
+}
+
+void Band::cover(const PixelWindow& pixels) {
+    column0 = floor_div(pixels.x0, spacing) - kBefore;
+    row0 = floor_div(pixels.y0, spacing) - kBefore;
+    columns = floor_div(pixels.x0 + pixels.width - 1, spacing) - kBefore + kTaps - column0;
+    rows = floor_div(pixels.y0 + pixels.height - 1, spacing) - kBefore + kTaps - row0;
+    weights.resize(static_cast<std::size_t>(spacing));
+    for (int p = 0; p < spacing; ++p) weights[static_cast<std::size_t>(p)] = lagrange(static_cast<double>(p) / spacing);
+    nodes.assign(static_cast<std::size_t>(rows) * depths.size() * static_cast<std::size_t>(columns), Node{});
+}
+
+float Band::largest_shift() const {
+    float largest = 0;
+    for (int r = 0; r < rows; ++r)
+        for (std::size_t k = 0; k < depths.size(); ++k) {
+            const auto scale = static_cast<float>(perspective ? 1 / depths[k] : 1.0);
+            for (int c = 0; c < columns; ++c) {
+                const Node n = nodes[index(r, k, c)];
+                largest = std::max({largest, std::abs(n[0]) * scale, std::abs(n[1]) * scale});
+            }
+        }
+    return largest;
+}
+
+void BandRow::start(const Band& band, int y) {
+    band_ = &band;
+    const int base = floor_div(y, band.spacing);
+    const int phase = y - base * band.spacing;
+    const int grid_row = base - kBefore - band.row0;
+    const std::size_t line = band.depths.size() * static_cast<std::size_t>(band.columns);
+    if (phase == 0) {
+        source_ = band.nodes.data() + band.index(grid_row + kBefore, 0);
+    } else {
+        line_.resize(line);
+        weighted_lines(band.nodes.data() + band.index(grid_row, 0), line, line,
+                       band.weights[static_cast<std::size_t>(phase)], line_.data());
+        source_ = line_.data();
+    }
+    cached_.resize(band.depths.size());
+    cached_x_.assign(band.depths.size(), std::numeric_limits<int>::min());
+}
+
+Node BandRow::node(std::size_t depth, int x) {
+    if (cached_x_[depth] == x) return cached_[depth];
+    const int base = floor_div(x, band_->spacing);
+    const int phase = x - base * band_->spacing;
+    const Node* p = source_ + depth * static_cast<std::size_t>(band_->columns) + (base - kBefore - band_->column0);
+    Node v;
+    if (phase == 0) {
+        v = p[kBefore];
+    } else {
+        const Weights& w = band_->weights[static_cast<std::size_t>(phase)];
+        v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] + splat(w[4]) * p[4] +
+            splat(w[5]) * p[5];
+    }
+    cached_[depth] = v;
+    cached_x_[depth] = x;
+    return v;
+}
+
+Shift BandRow::at(int x, double z) {
+    const Mix m = mix_at(*band_, z);
+    const Node a = node(m.lower, x);
+    Shift d{m.x_lower * a[0] + m.s_lower * a[2], m.x_lower * a[1] + m.s_lower * a[3]};
+    if (m.upper != m.lower) {
+        const Node b = node(m.upper, x);
+        d.x += m.x_upper * b[0] + m.s_upper * b[2];
+        d.y += m.x_upper * b[1] + m.s_upper * b[3];
+    }
+    return d;
+}
+
+namespace {
+
+EIKONAL_CLONES void mix_line(const Node* lower, const Node* upper, const Mix& m, int n, Node* out) {
+    const Node wl{m.x_lower, m.x_lower, m.s_lower, m.s_lower}, wu{m.x_upper, m.x_upper, m.s_upper, m.s_upper};
+    for (int i = 0; i < n; ++i) {
+        const Node v = wl * lower[i] + wu * upper[i];
+        out[i] = Node{v[0] + v[2], v[1] + v[3], 0, 0};
+    }
+}
+
+EIKONAL_CLONES void expand_line(const Node* line, int first_phase, int spacing, const Weights* weights, int n,
+                                float* uv) {
+    int phase = first_phase;
+    const Node* p = line;
+    for (int i = 0; i < n; ++i) {
+        const Weights& w = weights[phase];
+        const Node v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] +
+                       splat(w[4]) * p[4] + splat(w[5]) * p[5];
+        uv[2 * i] += v[0];
+        uv[2 * i + 1] += v[1];
+        if (++phase == spacing) {
+            phase = 0;
+            ++p;
+        }
+    }
+}
+
+}  // namespace
+
+void BandRow::add_constant_depth(int x0, int n, double z, float* uv) const {
+    const Band& band = *band_;
+    const Mix m = mix_at(band, z);
+    const auto columns = static_cast<std::size_t>(band.columns);
+    std::vector<Node> line(columns);
+    mix_line(source_ + m.lower * columns, source_ + m.upper * columns, m, band.columns, line.data());
+    const int base = floor_div(x0, band.spacing);
+    if (band.spacing == 1) {
+        const Node* p = line.data() + (base - band.column0);
+        for (int i = 0; i < n; ++i) {
+            uv[2 * i] += p[i][0];
+            uv[2 * i + 1] += p[i][1];
+        }
+        return;
+    }
+    expand_line(line.data() + (base - kBefore - band.column0), x0 - base * band.spacing, band.spacing,
+                band.weights.data(), n, uv);
+}
+
+}  // namespace eikonal

@@ -1,0 +1,110 @@
+/// Displacement of a band of image rows as a function of screen position *and* depth: what every model computes and
+/// every way of meeting the depth buffer reads.
+///
+/// A model bends rays on a grid of nodes, `spacing` pixels apart, anchored at the display window's pixel (0, 0), and
+/// records along each ray at axial depths z_0 < z_1 < … (PHYSICS 6)
+///     X(z) = f_px · x1⊥(z)  [px·m]   and its slope  S(z) = dX/dz  [px],
+/// so that the displacement of an object at axial depth z is d = X(z)/z (perspective) or d = X(z) (orthographic, where
+/// f_px is pixels per metre and X in px). In image axes: x right, y down.
+///
+/// Between depths X is the cubic Hermite interpolant of (X, S), or linear where the model says so (screens: exactly
+/// piecewise linear; tables: the paper's suggestion). Between grid nodes it is a six-point Lagrange interpolant, exact
+/// for fifth-order polynomials; at a spacing of 1 there is nothing to interpolate.
+///
+/// Beyond the last depth X continues along its last slope; before the first it is interpolated from X(0) = 0.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "warp/image/linear_image.h"
+
+namespace eikonal {
+
+enum class DepthInterpolation { Linear, Hermite };
+
+/// Widest spacing of nodes in pixels, and the largest part of a field's cell that they may span. At 0.6 cells the
+/// interpolant errs by about 0.2 % rms of a field that its own lattice resolves with four cells to an inner scale.
+inline constexpr int kWidestSpacing = 8;
+inline constexpr double kCellsPerNode = 0.6;
+/// Largest power of two that keeps to both, for a field whose finest cell is `cell_px` pixels wide on the screen.
+int node_spacing(double cell_px);
+
+/// X.x, X.y, S.x, S.y of one node at one depth; a SIMD register.
+using Node = float __attribute__((vector_size(16)));
+
+/// Displacement vector in pixels.
+struct Shift {
+    float x = 0, y = 0;
+};
+
+/// Nodes for a band of rows. Layout [grid row][depth][grid column].
+struct Band {
+    int spacing = 1;          ///< pixels between nodes, >= 1
+    int column0 = 0, row0 = 0;  ///< first node, in units of `spacing`: node (i, j) is the centre of pixel (i, j)·spacing
+    int columns = 0, rows = 0;
+    bool perspective = true;
+    DepthInterpolation interpolation = DepthInterpolation::Linear;
+    std::vector<double> depths;  ///< axial depth of each layer [m], ascending, > 0
+    std::vector<Node> nodes;
+    std::vector<std::array<float, 6>> weights;  ///< of the interpolant, for each phase 0 … spacing - 1
+
+    /// Sets the grid that interpolation needs for `rows` (absolute pixel window), and allocates. depths must be set.
+    void cover(const PixelWindow& pixels);
+    std::size_t index(int grid_row, std::size_t depth, int column = 0) const {
+        return (static_cast<std::size_t>(grid_row) * depths.size() + depth) * static_cast<std::size_t>(columns) +
+               static_cast<std::size_t>(column);
+    }
+    Node* row(int grid_row, std::size_t depth) { return nodes.data() + index(grid_row, depth); }
+    /// Multiplies the displacement.
+    void scale(float gain);
+    /// Upper bound of |d| over the band's nodes, in pixels (per component; interpolation overshoots by < 1.6 times).
+    float largest_shift() const;
+};
+
+/// One image row of a band, ready for look-ups at any column and depth.
+class BandRow {
+  public:
+    /// y: absolute pixel row inside the window that `band` covers; the band must outlive this.
+    void start(const Band& band, int y);
+
+    /// Displacement of pixel column x (absolute) for an object at axial depth z > 0.
+    Shift at(int x, double z);
+    /// The same for every column of [x0, x0 + n) at one depth, added into interleaved (u, v). The fast path.
+    void add_constant_depth(int x0, int n, double z, float* uv) const;
+
+  private:
+    Node node(std::size_t depth, int x);
+
+    const Band* band_ = nullptr;
+    std::vector<Node> line_;  ///< the row interpolated vertically: [depth][column]
+    const Node* source_ = nullptr;
+    std::vector<Node> cached_;
+    std::vector<int> cached_x_;
+};
+
+/// The rows of several bands (one a medium, each with depths of its own) whose displacements add up.
+class BandRows {
+  public:
+    void start(const std::vector<Band>& bands, int y) {
+        rows_.resize(bands.size());
+        for (std::size_t i = 0; i < bands.size(); ++i) rows_[i].start(bands[i], y);
+    }
+    Shift at(int x, double z) {
+        Shift sum;
+        for (BandRow& row : rows_) {
+            const Shift d = row.at(x, z);
+            sum.x += d.x;
+            sum.y += d.y;
+        }
+        return sum;
+    }
+    void add_constant_depth(int x0, int n, double z, float* uv) {
+        for (BandRow& row : rows_) row.add_constant_depth(x0, n, z, uv);
+    }
+
+  private:
+    std::vector<BandRow> rows_;
+};
+
+}  // namespace eikonal

@@ -1,0 +1,94 @@
+/// Displacement maps of a scene: media × camera × depth → (dx, dy) in pixels, for any frame, at random.
+///
+///     out(p) = in(p + d(p)),   d = f_px x1⊥(D)/D        (PHYSICS 6)
+///
+/// A Displacer is made once a shot and is immutable; at(F) prepares an instant (spectra summed over κ, transformed);
+/// Instant::map fills a window of pixels. Frame F depends on the scene, its settings and F alone: not on other frames,
+/// threads, or the window asked for.
+///
+/// Every medium is handled by the model that suits its form, and their displacements add:
+///     form             models (first: the default)
+///     screens          screens
+///     lattice          spectral (orthographic view along a lattice axis), else first-order; also table, tables
+///     gradient-noise   first-order
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "warp/displace/meet.h"
+#include "warp/scene/camera.h"
+#include "warp/scene/scene.h"
+
+namespace eikonal {
+
+enum class Model { Table, Tables, Spectral, Screens, FirstOrder };
+
+/// What the scene leaves to the footage and the command line.
+struct DisplacerSettings {
+    int width = 0, height = 0;     ///< of the display window
+    double pixel_aspect = 1;
+    double fps = 24;               ///< frame F is at t = (F - first_frame)/fps
+    std::optional<double> fov;     ///< overrides the scene's camera
+    double far = 1000;             ///< greatest axial distance [m] > 0: what lies beyond is displaced as at `far`
+    std::optional<Model> model;    ///< for every medium that it suits; left out: each medium's default
+};
+
+/// Where each pixel's object is: one axial distance for all [m], or a plane of them.
+using DepthSource = std::variant<double, const DepthPlane*>;
+
+class Displacer {
+  public:
+    /// UserError: media or models that do not apply, lattices that do not fit into memory, a broken camera path.
+    Displacer(const Scene& scene, const DisplacerSettings& settings);
+    ~Displacer();
+    Displacer(Displacer&&) noexcept;
+
+    /// One frame's media, ready to be mapped. Thread-safe; must not outlive the Displacer.
+    class Instant {
+      public:
+        /// Displacement of every pixel of `window`, times gain, into `uv`: window.area() interleaved pairs.
+        /// Rows in parallel. Finite for every finite depth > 0.
+        void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, double gain, float* uv) const;
+
+        const Camera& camera() const;
+        Instant(Instant&&) noexcept;
+        ~Instant();
+
+      private:
+        friend class Displacer;
+        struct State;
+        explicit Instant(std::unique_ptr<State> state);
+        std::unique_ptr<State> state_;
+    };
+
+    /// frame: any real number (shutter samples lie between frames). `nearest`, `farthest`: axial depths that map() will
+    /// be asked for.
+    Instant at(double frame, double nearest, double farthest) const;
+
+    /// Expected root mean square of |d| in pixels, over pixels and time, for an object at axial distance D at the
+    /// strength that the media have before any falloff. Gradient noise: estimated from kRmsRays rays.
+    double expected_rms(double D) const;
+
+    /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line): near 1 rays fold.
+    double focusing_variance(double D) const;
+
+    /// For --verbose: one line a medium: its model and why, its sizes; and what is left out.
+    const std::vector<std::string>& notes() const;
+    /// One line each: what the user should know of (folding rays, paths beyond a lattice period).
+    const std::vector<std::string>& warnings() const;
+    /// Names of the models in use, in the order of the media.
+    std::vector<std::string> models() const;
+
+    Camera camera(double frame) const;
+
+  private:
+    struct Shot;
+    std::unique_ptr<Shot> shot_;
+};
+
+inline constexpr int kRmsRays = 256;
+
+}  // namespace eikonal

@@ -1,0 +1,76 @@
+#include "warp/displace/first_order.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "noise/portable_math.h"
+
+namespace eikonal {
+namespace {
+
+constexpr int kFewestApertureRays = 7, kMostApertureRays = 64;
+
+/// Points of equal weight on the unit disc (Vogel's spiral); one point, the centre, for a point aperture.
+std::vector<dvec2> aperture_points(double aperture, double step) {
+    if (aperture <= 0) return {{0, 0}};
+    const double across = std::min(aperture / step, 100.0);
+    const int n = std::clamp(static_cast<int>(across * across), kFewestApertureRays, kMostApertureRays);
+    std::vector<dvec2> points;
+    constexpr double kGoldenTurns = 0.38196601125010515;
+    for (int j = 0; j < n; ++j) {
+        double s, c;
+        portable::sincos_turns(j * kGoldenTurns, s, c);
+        const double r = std::sqrt((j + 0.5) / n);
+        points.push_back({r * c, r * s});
+    }
+    return points;
+}
+
+template <class Medium>
+void fill_node(Band& band, const FirstOrderInstant& model, const Medium& medium, const std::vector<dvec2>& disc,
+               const Camera& camera, int row, int column) {
+    const StraightRay ray = straight_ray(camera, (band.column0 + column) * band.spacing + 0.5,
+                                         (band.row0 + row) * band.spacing + 0.5);
+    const auto force = [&](double w) {
+        const dvec3 p = ray.at(w);
+        if (disc.size() == 1) return medium.sample(p).gradient;
+        const double radius =
+            0.5 * model.aperture * (band.perspective ? std::max(0.0, 1 - w / model.focus) : 1.0);
+        dvec3 sum{0, 0, 0};
+        for (const dvec2& q : disc) sum += medium.sample(p + radius * (q.x * camera.right + q.y * camera.up)).gradient;
+        return sum / static_cast<double>(disc.size());
+    };
+    constexpr double kGauss = 0.21132486540518711775;  // (1 - 1/√3)/2
+    dvec3 x{0, 0, 0}, slope{0, 0, 0};                  // of ∫∫F in axial depth
+    double z = 0;
+    const double scale = model.strength * ray.length * ray.length;
+    for (std::size_t k = 0; k < band.depths.size(); ++k) {
+        const double target = band.depths[k];
+        const double steps = std::max(1.0, std::ceil((target - z) * ray.length / model.step));
+        const double h = (target - z) / steps;
+        for (double i = 0; i < steps; ++i) {
+            const double w = z + i * h;
+            const dvec3 f1 = force(w + kGauss * h), f2 = force(w + (1 - kGauss) * h);
+            x += h * slope + (0.5 * h * h) * ((1 - kGauss) * f1 + kGauss * f2);
+            slope += (0.5 * h) * (f1 + f2);
+        }
+        z = target;
+        const dvec2 shift = image_shift(camera, ray, scale * x), rate = image_shift(camera, ray, scale * slope);
+        band.row(row, k)[column] += Node{static_cast<float>(shift.x), static_cast<float>(shift.y),
+                                         static_cast<float>(rate.x), static_cast<float>(rate.y)};
+    }
+}
+
+}  // namespace
+
+void FirstOrderInstant::fill(Band& band, const Camera& camera) const {
+    const std::vector<dvec2> disc = aperture_points(aperture, step);
+    std::visit(
+        [&](const auto& field) {
+            for (int r = 0; r < band.rows; ++r)
+                for (int c = 0; c < band.columns; ++c) fill_node(band, *this, field, disc, camera, r, c);
+        },
+        medium);
+}
+
+}  // namespace eikonal

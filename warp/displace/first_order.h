@@ -1,0 +1,36 @@
+/// Model `first-order`: Eq. 7 integrated along every node's own ray, through any field that can be sampled at a point.
+///
+///     x1(z) = L² ∫₀^z (z - w) F(P(w)) dw        (PHYSICS 6; w is axial depth, L the ray's metres a metre of depth)
+///
+/// by two-point Gauss-Legendre rules on steps no longer than `step`, so that no eddy is skipped. An aperture is a bundle of
+/// parallel (orthographic) or converging (perspective; on the object at `focus`) rays whose forces are averaged.
+#pragma once
+
+#include <variant>
+
+#include "noise/gradient_noise.h"
+#include "noise/lattice_snapshot.h"
+#include "warp/displace/band.h"
+#include "warp/displace/ray_frame.h"
+
+namespace eikonal {
+
+/// A gradient-noise medium frozen at one time.
+struct GradientNoiseInstant {
+    const GradientNoiseField* field;
+    double t;
+    IndexSample sample(const dvec3& x) const { return field->sample(x, t); }
+};
+
+struct FirstOrderInstant {
+    std::variant<LatticeSnapshot, GradientNoiseInstant> medium;
+    double strength;  ///< multiplies ∇n: ray equation and exaggeration
+    double step;      ///< [m] of ray
+    double aperture;  ///< diameter [m]; 0: a point
+    double focus;     ///< axial depth on which a perspective aperture's rays converge [m]
+
+    /// Adds X and S at every node and depth.
+    void fill(Band& band, const Camera& camera) const;
+};
+
+}  // namespace eikonal

@@ -1,0 +1,84 @@
+#include "warp/image/depth_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "noise/error.h"
+#include "warp/image/plane.h"
+
+namespace eikonal {
+namespace {
+
+constexpr std::array<std::string_view, 3> kDepthChannels = {"Z", "depth.Z", "depth"};
+
+/// Metres of a stored value, before limits; infinity for background.
+double metres_of(double v, const DepthOptions& options) {
+    constexpr double kBackground = std::numeric_limits<double>::infinity();
+    if (!std::isfinite(v)) return kBackground;
+    if (options.type == DepthType::Inverse) {
+        if (v == 0) return kBackground;
+        if (!options.range) return 1 / v;
+        const double near = 1 / (*options.range)[0], far = 1 / (*options.range)[1];
+        const double inverse = far + v * (near - far);
+        return inverse == 0 ? kBackground : 1 / inverse;
+    }
+    if (options.range) return (*options.range)[0] + v * ((*options.range)[1] - (*options.range)[0]);
+    return v == 0 ? kBackground : v;
+}
+
+}  // namespace
+
+void check_depth_options(const DepthOptions& options) {
+    if (!(options.far > 0) || !std::isfinite(options.far))
+        throw UserError(fmt::format("--far {}: must be a positive number of metres", options.far));
+    if (!options.range) return;
+    const auto [near, far] = *options.range;
+    const bool inverse = options.type == DepthType::Inverse;
+    const double least = std::min(near, far);
+    if (!std::isfinite(near) || !std::isfinite(far) || near == far || (inverse ? least <= 0 : least < 0))
+        throw UserError(fmt::format("--depth-range {},{}: NEAR and FAR must be two different {} numbers of metres",
+                                    near, far, inverse ? "positive" : "non-negative"));
+}
+
+DepthBuffer depth_from_picture(const Picture& picture, const std::filesystem::path& file, const DepthOptions& options,
+                               const PixelWindow& data, const PixelWindow& display) {
+    check_depth_options(options);
+    constexpr float kOutside = std::numeric_limits<float>::infinity();
+    Plane plane = take_plane(picture, file, options.channel, kDepthChannels, data, display, kOutside);
+    if (plane.integer && !options.range)
+        throw UserError(
+            fmt::format("'{}': channel '{}' holds integers, which are no metres; say what they mean with "
+                        "--depth-range NEAR,FAR",
+                        file.string(), plane.channel));
+    if (std::all_of(plane.values.begin(), plane.values.end(), [](float v) { return v == 0 || std::isnan(v); }))
+        throw FrameError(fmt::format(
+            "'{}': channel '{}' holds no depth, only zeros{}", file.string(), plane.channel,
+            std::any_of(plane.values.begin(), plane.values.end(), [](float v) { return std::isnan(v); }) ? " and NaN"
+                                                                                                         : ""));
+
+    const auto far = static_cast<float>(std::min(options.far, static_cast<double>(kInfiniteDepth)));
+    std::size_t negative = 0;
+    for (float& value : plane.values) {
+        const double metres = metres_of(value, options);
+        const bool below = metres < 0 || (std::isinf(value) && value < 0);
+        negative += below ? 1 : 0;
+        value = metres >= kInfiniteDepth ? std::max(far, kNearestDepth)
+                                         : std::max(static_cast<float>(metres), kNearestDepth);
+    }
+    if (negative > 0)
+        throw FrameError(
+            fmt::format("'{}': channel '{}' has {} negative depth value{}; depth must be positive "
+                        "(check --depth-type and --depth-range)",
+                        file.string(), plane.channel, negative, negative == 1 ? "" : "s"));
+    return {data, options.type == DepthType::Ray, std::move(plane.values)};
+}
+
+DepthBuffer read_depth(const std::filesystem::path& file, const DepthOptions& options, const PixelWindow& data,
+                       const PixelWindow& display) {
+    return depth_from_picture(read_picture(file), file, options, data, display);
+}
+
+}  // namespace eikonal

@@ -1,0 +1,29 @@
+/// The one form in which pictures, movie frames and the resampler exchange pixels.
+///
+/// Convention: linear light (1 is reference white), premultiplied by alpha, row 0 on top, interleaved float32, always
+/// four lanes a pixel: R, G, B, A. A picture without alpha has A = 1; a grey one uses lane 0 only and lanes 1, 2 are 0.
+/// Pixel (x, y) has its centre at (x + 0.5, y + 0.5) in the coordinates of the display window's plane.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace eikonal {
+
+/// A rectangle of pixels: columns x0 … x0 + width - 1, rows y0 … y0 + height - 1. Origins may be negative (overscan).
+struct PixelWindow {
+    int x0 = 0, y0 = 0, width = 0, height = 0;
+
+    std::size_t area() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+    bool operator==(const PixelWindow&) const = default;
+};
+
+/// Pixels of the data window, and where that lies on the display window. Both windows share one coordinate system.
+struct LinearImage {
+    PixelWindow data;           ///< the pixels that exist
+    PixelWindow display;        ///< the frame as shown; may be smaller (overscan) or larger (crop) than `data`
+    double pixel_aspect = 1;    ///< width / height of a pixel
+    std::vector<float> pixels;  ///< data.width * data.height * 4, lanes R G B A
+};
+
+}  // namespace eikonal

@@ -1,0 +1,98 @@
+/// The resampler: out(p) = in(p + d(p)) for float pixels, exact in position.
+///
+/// Positions. The integer part and the fraction of a position are taken from the displacement alone, floor(d) and
+/// d - floor(d), never from x + d: a shift of 0.001 px at x = 16000 is as exact as at x = 0. Consequently
+///  - a displacement of zero copies the pixel's bits, whatever they hold (-0, NaN, infinities) and whatever surrounds
+///    it; an integer displacement copies the source pixel's bits. (`Area` copies at an integer displacement that is
+///    not zero only where the map is locally rigid; elsewhere the footprint is wider than a pixel.);
+///  - an axis with an integer displacement is not filtered: samples of zero weight are never read.
+///
+/// Displacements are in pixels, x right, y down, measured between pixel centres. One with a component that is NaN or
+/// infinite counts as zero. Components beyond +-max_displacement count as +-max_displacement; where that lands follows
+/// from the edge mode like any other position outside.
+///
+/// Filters. Every filter's weights sum to 1 (to rounding), so constants are kept.
+///  - Bilinear: never leaves the range of its four samples. Exact for linear images.
+///  - Cubic: Catmull-Rom (a = -1/2), 4 x 4 samples. Exact for quadratic images.
+///  - Lanczos3: 6 x 6 samples, normalised; weights within lanczos3_weight_error of sinc(x) sinc(x/3) / sum.
+///  - Area: the mean of the source over the pixel's footprint, see area.h. Weights are not negative. Where the map
+///    shifts or magnifies it is Bilinear.
+/// Cubic and Lanczos3 have negative lobes, and nothing is clamped: a lone highlight H over black is ringed by values
+/// down to -0.075 H (Cubic) and -0.14 H (Lanczos3), and a picture (or alpha) within 0...1 may leave it by
+/// cubic_overshoot and lanczos3_overshoot at the worst. Bilinear and Area never leave it: they suit plates with strong
+/// highlights. Values stay finite for finite input below 1e38 in magnitude (Bilinear, Area: below 3.4e38).
+///
+/// Alpha must be premultiplied, as in the files. Channels that are not colour are never filtered: nearest_source().
+/// Bytes do not depend on the number of threads, on the processor, or on how an image is cut into windows (given
+/// the same samples around them); `Area` looks at the displacement of the four neighbours inside the map's window.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "warp/image/linear_image.h"
+
+namespace eikonal {
+
+enum class Filter { Bilinear, Cubic /*Catmull-Rom*/, Lanczos3, Area };
+
+/// What lies outside the input's window. Mirror: reflected with the edge pixel repeated (cba|abc|cba), as in
+/// OpenImageIO. Clamp: the nearest edge pixel. Wrap: periodic. Black: zero in all channels, alpha included.
+enum class Edge { Mirror, Clamp, Wrap, Black };
+
+/// Displacement components are clamped to this magnitude [pixels].
+inline constexpr float max_displacement = 1 << 30;
+/// Coordinates and sizes of windows must not exceed this magnitude [pixels].
+inline constexpr int max_coordinate = 1 << 28;
+/// Largest error of a Lanczos3 weight, and of the sum of the six from 1.
+inline constexpr double lanczos3_weight_error = 4e-7;
+/// How far a picture within 0...1 may come out below 0 or above 1: ((sum of |weights|)^2 - 1)/2 at half a pixel.
+inline constexpr double cubic_overshoot = 0.282;
+inline constexpr double lanczos3_overshoot = 0.70;
+
+/// The image library's rectangle of pixels, shared.
+using Window = PixelWindow;
+
+/// Interleaved float pixels of a window; `data` is the pixel (x0, y0). channels 1..4 (4 is the fast path). stride in
+/// floats from row to row.
+struct ImageView {
+    const float* data;
+    Window window;
+    int channels;
+    std::ptrdiff_t stride;
+};
+
+/// As ImageView, written to.
+struct MutableImageView {
+    float* data;
+    Window window;
+    int channels;
+    std::ptrdiff_t stride;
+};
+
+/// Displacement in pixels, interleaved (u, v), x right, y down. Same window as the output.
+struct MapView {
+    const float* data;
+    Window window;
+    std::ptrdiff_t stride;
+};
+
+struct ResampleOptions {
+    Filter filter = Filter::Cubic;
+    Edge edge = Edge::Mirror;
+    std::array<float, 4> channel_scale{1, 1, 1, 1};  ///< dispersion: displacement of channel c is channel_scale[c]*d
+};
+
+/// out(p) = in(p + d(p)) for each p of out.window. in.window may be larger (overscan) or smaller than out.window, or
+/// lie elsewhere; positions outside in.window follow `edge`. Channels of equal scale share their fetches: all equal is
+/// the fast path. `out` must not overlap the others. An empty out.window does nothing. Throws std::invalid_argument (a
+/// bug of the caller): channels differ or are not 1..4, d.window is not out.window, an empty in.window, a null pointer,
+/// coordinates beyond max_coordinate.
+void resample(const ImageView& in, const MapView& d, const MutableImageView& out, const ResampleOptions& options);
+
+/// Channels that are not colour are never filtered: the source sample nearest to (x + dx, y + dy), halves to the right
+/// and down. The result is the source pixel (x, y) inside in_window, or nullopt for Edge::Black outside.
+std::optional<std::array<int, 2>> nearest_source(int x, int y, float dx, float dy, const Window& in_window, Edge edge);
+
+}  // namespace eikonal

@@ -1,0 +1,58 @@
+#include "warp/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include "noise/error.h"
+#include "noise/random.h"
+#include "warp/scene/schema.h"
+#include "warp/scene/settings.h"
+#include "warp/scene/text_file.h"
+#include "warp/scene/toml_guard.h"
+
+namespace eikonal {
+
+namespace {
+
+toml::table parse_text(std::string_view text, const std::string& name) {
+    if (const std::size_t line = scene_file::too_dotted_line(text))
+        throw UserError(fmt::format("{}:{}: more than {} dots in keys and text; shorten the file", name, line,
+                                    scene_file::kMostDots));
+    try {
+        return toml::parse(text, name);
+    } catch (const toml::parse_error& error) {
+        throw UserError(
+            scene_file::printable(fmt::format("{}: {}", scene_file::place(error.source(), name), error.description())));
+    }
+}
+
+/// Every medium draws its own numbers, even where the file gives all the same seed.
+void mix_seeds(Scene& scene, std::uint64_t scene_seed) {
+    for (std::size_t i = 0; i < scene.media.size(); ++i) {
+        const RandomStream stream(scene_seed, "medium", i);
+        if (auto* turbulence = std::get_if<TurbulenceSpec>(&scene.media[i]))
+            turbulence->seed = stream.bits(turbulence->seed);
+        if (auto* blobs = std::get_if<BlobsSpec>(&scene.media[i]); blobs && blobs->wind)
+            blobs->wind->seed = stream.bits(blobs->wind->seed);
+    }
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& name, const std::vector<std::string>& settings,
+                  std::optional<std::uint64_t> seed) {
+    toml::table root = parse_text(text, name.string());
+    for (const std::string& setting : settings) scene_file::apply_setting(root, setting);
+
+    Scene scene;
+    scene.file = name;
+    scene_file::read_scene({root, "", scene.file}, scene);
+    mix_seeds(scene, seed.value_or(0));
+    return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                 std::optional<std::uint64_t> seed) {
+    return parse_scene(scene_file::read_text(file, "scene"), file, settings, seed);
+}
+
+}  // namespace eikonal

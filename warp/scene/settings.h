@@ -1,0 +1,17 @@
+/// `--set KEY=VALUE`: changes to a scene's tables before they are checked.
+#pragma once
+
+#include <toml++/toml.h>
+#include <string>
+
+namespace eikonal::scene_file {
+
+/// Deepest dotted key of a setting; scenes have four parts ("medium.0.falloff.length"), an element five.
+inline constexpr std::size_t kDeepestKey = 8;
+
+/// Applies one "key=value". The key is dotted, array elements count from 0, and tables, keys and the element after an
+/// array's last are made where missing. The value is a TOML value, a bare word is text, and nothing removes the key.
+/// Nodes made here name the option as their source. Throws UserError that starts with "--set KEY=VALUE: ".
+void apply_setting(toml::table& root, const std::string& setting);
+
+}  // namespace eikonal::scene_file
