@@ -5,9 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <cstdio>
-#include <map>
 #include <mutex>
 
 #include "noise/error.h"
@@ -23,11 +21,10 @@ using namespace eikonal::reference;
 
 struct Options {
     std::filesystem::path scene, output;
-    bool straight = false, overwrite = false;
+    bool straight = false, overwrite = false, compact = false;
     std::string frames;
     int samples = 64, threads = 0;
     std::vector<std::string> settings;
-    Compression compression = Compression::Zip;
 };
 
 void declare(CLI::App& app, Options& o) {
@@ -42,9 +39,7 @@ void declare(CLI::App& app, Options& o) {
     render.add_option("--samples", o.samples, "Samples a pixel for the colour; powers of two spread best")
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
-    render.add_option("--compression", o.compression, "zip: exact; dwaa: small, colour slightly lossy, Z exact")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Compression>{{"zip", Compression::Zip}, {"dwaa", Compression::Dwaa}}));
+    render.add_flag("--compact", o.compact, "Small files: colour slightly lossy (DWAA), Z to 2e-6");
     render.add_option("--set", o.settings, "KEY=VALUE: override a key of the scene, e.g. camera.resolution=[640,360]")
         ->allow_extra_args(false);
     render.add_option("--threads", o.threads, "Threads (default: all; the picture does not depend on it)")
@@ -101,7 +96,8 @@ void render(const Options& o) {
         try {
             const AtomicFile place(file);  // fails now rather than after the work if the file cannot be put there
             TileProgress progress(fmt::format("frame {}", frame), renderer.tile_count());
-            write_frame(file, renderer.render(frame, [&] { progress.tile_done(); }), o.compression);
+            write_frame(file, renderer.render(frame, [&] { progress.tile_done(); }),
+                        o.compact ? Storage::Compact : Storage::Exact);
         } catch (const FrameError& error) {
             throw FrameError(fmt::format("frame {}: {}", frame, error.what()));
         }

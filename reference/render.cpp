@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -29,6 +30,11 @@ std::array<int, 2> resolution(const Scene& scene) {
 
 float storable(double radiance) {
     return std::min(radiance > 0 ? static_cast<float>(radiance) : 0.0f, kLargestHalf);  // NaN becomes 0
+}
+
+/// To 18 significant bits: the last six of the mantissa are zero, which packs well. Infinity stays.
+float rounded_depth(float z) {
+    return std::bit_cast<float>((std::bit_cast<std::uint32_t>(z) + 32u) & ~63u);
 }
 
 }  // namespace
@@ -92,7 +98,7 @@ void Renderer::render_tile(const Camera& camera, int frame, const Tile& tile, Re
     }
 }
 
-void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, Compression compression) {
+void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, Storage storage) {
     constexpr std::size_t kColorBytes = 8, kPixelBytes = kColorBytes + sizeof(float);
     Part part;
     part.spec = OIIO::ImageSpec(frame.width, frame.height, 5, OIIO::TypeDesc::HALF);
@@ -101,14 +107,16 @@ void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, 
     part.spec.channelnames = {"R", "G", "B", "A", "Z"};
     part.spec.alpha_channel = 3;
     part.spec.z_channel = 4;
-    part.spec.attribute("compression", compression == Compression::Zip ? "zip" : "dwaa:45");
+    part.spec.attribute("compression", storage == Storage::Exact ? "zip" : "dwaa:45");
     part.spec.attribute("oiio:ColorSpace", "Linear");
     part.pixels.resize(frame.depth.size() * kPixelBytes);
     for (std::size_t c = 0; c < 4; ++c)
         encode_values(OIIO::TypeDesc::HALF, frame.color.data() + c, 4, part.pixels.data() + 2 * c, kPixelBytes,
                       frame.depth.size());
-    for (std::size_t i = 0; i < frame.depth.size(); ++i)
-        std::memcpy(part.pixels.data() + i * kPixelBytes + kColorBytes, &frame.depth[i], sizeof(float));
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+        const float z = storage == Storage::Exact ? frame.depth[i] : rounded_depth(frame.depth[i]);
+        std::memcpy(part.pixels.data() + i * kPixelBytes + kColorBytes, &z, sizeof z);
+    }
     write_picture(file, {{std::move(part)}, "openexr"});
 }
 

@@ -53,10 +53,13 @@ struct CameraRay {
 };
 CameraRay camera_ray(const Camera& camera, double px, double py);
 
-enum class Compression { Zip, Dwaa };
+/// Exact: ZIP. Compact, for small sample files: colour DWAA (slightly lossy), Z rounded to within kCompactDepthError.
+enum class Storage { Exact, Compact };
 
-/// Writes R, G, B, A (half) and Z (float) as one EXR, with the camera in its header. Dwaa is lossy for colour and keeps
-/// Z exact. FrameError.
-void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, Compression compression);
+/// Relative.
+inline constexpr double kCompactDepthError = 0x1p-18;
+
+/// Writes R, G, B, A (half) and Z (float) as one EXR. FrameError.
+void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, Storage storage);
 
 }  // namespace eikonal::reference
