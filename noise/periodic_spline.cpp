@@ -68,75 +68,73 @@ EIKONAL_CLONES void locate(double first, double step, double size, double inv_si
     }
 }
 
-/// Sums over the 4 × 4 taps, of the value and of both derivatives in cells.
-EIKONAL_CLONES void gradients_at(const float* coefficients, int stride, const Block& block, int count, float scale_x,
-                                 float scale_y, float* uv) {
-    for (int i = 0; i < count; ++i) {
-        const float* c = coefficients + static_cast<std::ptrdiff_t>(block.cell_x[i]) * stride + block.cell_y[i];
-        const Weights x = weights(block.tx[i]), y = weights(block.ty[i]);
-        Float4 value = x.w[0] * load(c), slope = x.d[0] * load(c);
-        for (int a = 1; a < 4; ++a) {
-            const Float4 row = load(c + a * static_cast<std::ptrdiff_t>(stride));
-            value += x.w[a] * row;
-            slope += x.d[a] * row;
-        }
-        uv[2 * i] += scale_x * sum(slope * y.w);
-        uv[2 * i + 1] += scale_y * sum(value * y.d);
-    }
-}
-
-/// A row at constant y: the taps along y collapse once into two periodic functions of x, interleaved as (value, ∂/∂v).
-EIKONAL_CLONES void collapse_row(const float* coefficients, int stride, int rows, float ty, float* line) {
+/// A row at constant y: the taps along y collapse once into two periodic functions of x, the value and ∂/∂v.
+EIKONAL_CLONES void collapse_row(const float* coefficients, int stride, int count, float ty, float* value, float* slope) {
     const Weights y = weights(ty);
-    for (int a = 0; a < rows; ++a) {
-        const Float4 c = load(coefficients + static_cast<std::ptrdiff_t>(a) * stride);
-        line[2 * a] = sum(c * y.w);
-        line[2 * a + 1] = sum(c * y.d);
+    const float *c0 = coefficients, *c1 = c0 + stride, *c2 = c1 + stride, *c3 = c2 + stride;
+    const float w0 = y.w[0], w1 = y.w[1], w2 = y.w[2], w3 = y.w[3], d0 = y.d[0], d1 = y.d[1], d2 = y.d[2], d3 = y.d[3];
+    for (int a = 0; a < count; ++a) {
+        value[a] = (w0 * c0[a] + w1 * c1[a]) + (w2 * c2[a] + w3 * c3[a]);
+        slope[a] = (d0 * c0[a] + d1 * c1[a]) + (d2 * c2[a] + d3 * c3[a]);
     }
 }
 
-EIKONAL_CLONES void gradients_on_row(const float* line, const std::int32_t* cell, const float* tx, int count,
-                                     float scale_x, float scale_y, float* uv) {
-    for (int i = 0; i < count; ++i) {
-        const float* c = line + 2 * static_cast<std::ptrdiff_t>(cell[i]);
-        const float t = tx[i], s = 1 - t, t2 = t * t, s2 = s * s;
+/// A cell of a row as polynomials in t. Gradients: ∂/∂u = a0 + a1 t + a2 t², ∂/∂v = b0 + b1 t + b2 t² + b3 t³.
+struct GradientCell {
+    Float4 low;   ///< a0, b0, a1, b1
+    Float4 high;  ///< a2, b2, 0, b3
+};
+
+EIKONAL_CLONES void gradient_cells(const float* value, const float* slope, int cells, float scale_x, float scale_y,
+                                   GradientCell* out) {
+    for (int i = 0; i < cells; ++i) {
+        const float a0 = value[i], a1 = value[i + 1], a2 = value[i + 2], a3 = value[i + 3];
+        const float b0 = slope[i], b1 = slope[i + 1], b2 = slope[i + 2], b3 = slope[i + 3];
         constexpr float sixth = 1.0F / 6;
-        const float dx = 0.5F * (t2 * c[6] - s2 * c[0]) + 0.5F * (t * (3 * t - 4) * c[2] - s * (3 * s - 4) * c[4]);
-        const float dy =
-            (s2 * s * c[1] + (4 - 3 * t2 * (2 - t)) * c[3]) + ((4 - 3 * s2 * (2 - s)) * c[5] + t2 * t * c[7]);
-        uv[2 * i] += scale_x * dx;
-        uv[2 * i + 1] += scale_y * (sixth * dy);
+        out[i].low = Float4{scale_x * (0.5F * (a2 - a0)), scale_y * (sixth * (b0 + 4 * b1 + b2)),
+                            scale_x * ((a0 - a1) + (a2 - a1)), scale_y * (0.5F * (b2 - b0))};
+        out[i].high = Float4{scale_x * (0.5F * ((a3 - a0) + 3 * (a1 - a2))), scale_y * (0.5F * ((b0 - b1) + (b2 - b1))), 0,
+                             scale_y * (sixth * ((b3 - b0) + 3 * (b1 - b2)))};
+    }
+}
+
+EIKONAL_CLONES void gradients_on_row(const GradientCell* cells, const std::int32_t* cell, const float* tx, int count,
+                                     float* uv) {
+    for (int i = 0; i < count; ++i) {
+        const float t = tx[i];
+        const GradientCell& c = cells[cell[i]];
+        const Float4 q = c.low + (t * t) * c.high;
+        uv[2 * i] += q[0] + t * q[2];
+        uv[2 * i + 1] += q[1] + t * q[3];
+    }
+}
+
+/// The value as a cubic of each cell.
+EIKONAL_CLONES void value_cells(const float* value, int cells, float scale, Float4* out) {
+    for (int i = 0; i < cells; ++i) {
+        const float c0 = value[i], c1 = value[i + 1], c2 = value[i + 2], c3 = value[i + 3];
+        constexpr float sixth = 1.0F / 6;
+        out[i] = Float4{scale * (sixth * (c0 + 4 * c1 + c2)), scale * (0.5F * (c2 - c0)), scale * (0.5F * ((c0 - c1) + (c2 - c1))),
+                        scale * (sixth * ((c3 - c0) + 3 * (c1 - c2)))};
+    }
+}
+
+EIKONAL_CLONES void values_on_row(const Float4* cells, const std::int32_t* cell, const float* tx, int count, float* values) {
+    for (int i = 0; i < count; ++i) {
+        const Float4 c = cells[cell[i]];
+        const float t = tx[i];
+        values[i] += c[0] + t * (c[1] + t * (c[2] + t * c[3]));
     }
 }
 
 EIKONAL_CLONES void values_at(const float* coefficients, int stride, const Block& block, int count, float scale,
                               float* values) {
     for (int i = 0; i < count; ++i) {
-        const float* c = coefficients + static_cast<std::ptrdiff_t>(block.cell_x[i]) * stride + block.cell_y[i];
+        const float* c = coefficients + static_cast<std::ptrdiff_t>(block.cell_y[i]) * stride + block.cell_x[i];
         const Weights x = weights(block.tx[i]), y = weights(block.ty[i]);
-        Float4 value = x.w[0] * load(c);
-        for (int a = 1; a < 4; ++a) value += x.w[a] * load(c + a * static_cast<std::ptrdiff_t>(stride));
-        values[i] += scale * sum(value * y.w);
-    }
-}
-
-/// Cubic (four-point Lagrange) between knots `every` points apart; knots[1] is that of point 0. uv interleaved.
-EIKONAL_CLONES void add_between_knots(const float* knots, int every, int n, float weight, float* uv) {
-    const float inv = 1.0F / static_cast<float>(every);
-    for (int first = 0; first < n; first += every, knots += 2) {
-        std::array<std::array<float, 4>, 2> p;
-        for (int c = 0; c < 2; ++c) {
-            const float a = knots[c], b = knots[2 + c], d = knots[4 + c], e = knots[6 + c];
-            p[c] = {weight * b, weight * (d - a / 3 - b / 2 - e / 6), weight * ((a + d) / 2 - b),
-                    weight * ((b - d) / 2 + (e - a) / 6)};
-        }
-        const int count = std::min(every, n - first);
-        float* out = uv + 2 * static_cast<std::ptrdiff_t>(first);
-        for (int i = 0; i < count; ++i) {
-            const float t = static_cast<float>(i) * inv;
-            out[2 * i] += p[0][0] + t * (p[0][1] + t * (p[0][2] + t * p[0][3]));
-            out[2 * i + 1] += p[1][0] + t * (p[1][1] + t * (p[1][2] + t * p[1][3]));
-        }
+        Float4 value = y.w[0] * load(c);
+        for (int b = 1; b < 4; ++b) value += y.w[b] * load(c + b * static_cast<std::ptrdiff_t>(stride));
+        values[i] += scale * sum(value * x.w);
     }
 }
 
@@ -180,7 +178,7 @@ PeriodicSpline2::PeriodicSpline2(FftVector<complex32>&& spectrum, int nx, int ny
     : PeriodicSpline2(SplinePlan2(nx, ny, pad), std::move(spectrum), Lx, Ly) {}
 
 PeriodicSpline2::PeriodicSpline2(const SplinePlan2& plan, FftVector<complex32>&& spectrum, double Lx, double Ly)
-    : nx_(plan.nx_ * plan.pad_), ny_(plan.ny_ * plan.pad_), stride_(ny_ + 4), per_x_(nx_ / Lx), per_y_(ny_ / Ly) {
+    : nx_(plan.nx_ * plan.pad_), ny_(plan.ny_ * plan.pad_), stride_(nx_ + 4), per_x_(nx_ / Lx), per_y_(ny_ / Ly) {
     FftVector<complex32> modes =
         plan.pad_ == 1 ? std::move(spectrum) : padded_spectrum(spectrum, plan.nx_, plan.ny_, plan.pad_);
     const auto half = static_cast<std::size_t>(ny_ / 2 + 1);
@@ -189,15 +187,27 @@ PeriodicSpline2::PeriodicSpline2(const SplinePlan2& plan, FftVector<complex32>&&
     FftScratch<float> samples(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_));
     plan.plan_.execute(modes.data(), samples.data());
     modes = {};
-    // Row and column 0 hold sample -1; the period is [1, n + 1), followed by three wrapped ones.
-    coefficients_.resize(static_cast<std::size_t>(nx_ + 4) * static_cast<std::size_t>(stride_));
-    for (int a = 0; a < nx_ + 4; ++a) {
-        const float* from = samples.data() + static_cast<std::ptrdiff_t>((a + nx_ - 1) % nx_) * ny_;
-        float* to = coefficients_.data() + static_cast<std::ptrdiff_t>(a) * stride_;
-        to[0] = from[ny_ - 1];
-        std::copy_n(from, ny_, to + 1);
-        for (int b = 0; b < 3; ++b) to[ny_ + 1 + b] = from[b % ny_];
+    // Transposed, x fastest, so that whole rows are read in order. Row and column 0 hold sample -1; the period is
+    // [1, n + 1), followed by three wrapped ones.
+    coefficients_.resize(static_cast<std::size_t>(ny_ + 4) * static_cast<std::size_t>(stride_));
+    constexpr int kTile = 16;
+    for (int b0 = 0; b0 < ny_; b0 += kTile)
+        for (int a = 0; a < nx_; ++a) {
+            const float* from = samples.data() + static_cast<std::ptrdiff_t>(a) * ny_;
+            float* to = coefficients_.data() + a + 1;
+            for (int b = b0; b < std::min(b0 + kTile, ny_); ++b) to[static_cast<std::ptrdiff_t>(b + 1) * stride_] = from[b];
+        }
+    for (int b = 1; b <= ny_; ++b) {
+        float* row = coefficients_.data() + static_cast<std::ptrdiff_t>(b) * stride_;
+        row[0] = row[nx_];
+        for (int a = 0; a < 3; ++a) row[nx_ + 1 + a] = row[1 + a % nx_];
     }
+    const auto copy_row = [&](int from, int to) {
+        std::copy_n(coefficients_.data() + static_cast<std::ptrdiff_t>(from) * stride_, stride_,
+                    coefficients_.data() + static_cast<std::ptrdiff_t>(to) * stride_);
+    };
+    copy_row(ny_, 0);
+    for (int b = 0; b < 3; ++b) copy_row(1 + b % ny_, ny_ + 1 + b);
 }
 
 PeriodicSpline2::Sample PeriodicSpline2::sample(double x, double y) const {
@@ -205,15 +215,14 @@ PeriodicSpline2::Sample PeriodicSpline2::sample(double x, double y) const {
     const double u = wrap(std::fmod(x, nx_ / per_x_) * per_x_, nx_), v = wrap(std::fmod(y, ny_ / per_y_) * per_y_, ny_);
     const auto cu = static_cast<std::int32_t>(u), cv = static_cast<std::int32_t>(v);
     const Weights wx = weights(static_cast<float>(u - cu)), wy = weights(static_cast<float>(v - cv));
-    const float* c = coefficients_.data() + static_cast<std::ptrdiff_t>(cu) * stride_ + cv;
-    Float4 value = wx.w[0] * load(c), slope = wx.d[0] * load(c);
-    for (int a = 1; a < 4; ++a) {
-        const Float4 row = load(c + a * static_cast<std::ptrdiff_t>(stride_));
-        value += wx.w[a] * row;
-        slope += wx.d[a] * row;
+    const float* c = coefficients_.data() + static_cast<std::ptrdiff_t>(cv) * stride_ + cu;
+    Float4 value = wy.w[0] * load(c), slope = wy.d[0] * load(c);
+    for (int b = 1; b < 4; ++b) {
+        const Float4 row = load(c + b * static_cast<std::ptrdiff_t>(stride_));
+        value += wy.w[b] * row;
+        slope += wy.d[b] * row;
     }
-    return {sum(value * wy.w), static_cast<float>(per_x_) * sum(slope * wy.w),
-            static_cast<float>(per_y_) * sum(value * wy.d)};
+    return {sum(value * wx.w), static_cast<float>(per_x_) * sum(value * wx.d), static_cast<float>(per_y_) * sum(slope * wx.w)};
 }
 
 /// A batch's line in cells: start in [0, n], step in [-n/2, n/2].
@@ -232,51 +241,49 @@ PeriodicSpline2::Line PeriodicSpline2::line(double x0, double y0, double step_x,
             std::remainder(step_x, Lx) * per_x_, std::remainder(step_y, Ly) * per_y_};
 }
 
-void PeriodicSpline2::add_gradients(double x0, double y0, double step_x, double step_y, int n, float weight,
-                                    float* uv) const {
-    if (coefficients_.empty()) return;
-    const Line l = line(x0, y0, step_x, step_y);
-    Block block;
-    const float sx = static_cast<float>(per_x_), sy = static_cast<float>(per_y_);
-    const double fastest = std::max(std::abs(l.du), std::abs(l.dv));
-    if (fastest * 64 <= 1 && n > 16) {
-        // Knots at points -every, 0, every, … up to one beyond the last interval's end.
-        const int every = static_cast<int>(std::min(0.125 / std::max(fastest, 1e-12), static_cast<double>(n)));
-        const int count = (n + every - 1) / every + 3;
-        std::vector<float> knots(2 * static_cast<std::size_t>(count));
-        const Line coarse{wrap(l.u - l.du * every, nx_), wrap(l.v - l.dv * every, ny_), l.du * every, l.dv * every};
-        for (int begin = 0; begin < count; begin += kBlock) {
-            const int m = std::min(kBlock, count - begin);
-            coarse.locate(*this, begin, m, block);
-            gradients_at(coefficients_.data(), stride_, block, m, sx, sy,
-                         knots.data() + 2 * static_cast<std::ptrdiff_t>(begin));
-        }
-        add_between_knots(knots.data(), every, n, weight, uv);
-        return;
-    }
-    if (l.dv == 0 && n >= nx_ / 4) {
-        l.locate(*this, 0, 1, block);
-        FftScratch<float> row(2 * static_cast<std::size_t>(nx_ + 4));
-        collapse_row(coefficients_.data() + block.cell_y[0], stride_, nx_ + 4, block.ty[0], row.data());
-        for (int begin = 0; begin < n; begin += kBlock) {
-            const int m = std::min(kBlock, n - begin);
-            eikonal::locate(l.u, l.du, nx_, 1.0 / nx_, begin, m, block.cell_x.data(), block.tx.data());
-            gradients_on_row(row.data(), block.cell_x.data(), block.tx.data(), m, weight * sx, weight * sy,
-                             uv + 2 * static_cast<std::ptrdiff_t>(begin));
-        }
-        return;
-    }
-    for (int begin = 0; begin < n; begin += kBlock) {
-        const int m = std::min(kBlock, n - begin);
-        l.locate(*this, begin, m, block);
-        gradients_at(coefficients_.data(), stride_, block, m, weight * sx, weight * sy,
-                     uv + 2 * static_cast<std::ptrdiff_t>(begin));
-    }
+PeriodicSpline2::Columns PeriodicSpline2::columns(double x0, double step_x, int n) const {
+    Columns result{std::vector<std::int32_t>(static_cast<std::size_t>(n)), std::vector<float>(static_cast<std::size_t>(n)), 0, 0};
+    if (coefficients_.empty()) return result;
+    const Line l = line(x0, 0, step_x, 0);
+    locate(l.u, l.du, nx_, 1.0 / nx_, 0, n, result.cell.data(), result.t.data());
+    if (n == 0) return result;
+    const auto [low, high] = std::minmax_element(result.cell.begin(), result.cell.end());
+    result.first = *low;
+    result.count = *high - *low + 1;
+    for (std::int32_t& cell : result.cell) cell -= result.first;
+    return result;
+}
+
+FftScratch<float> PeriodicSpline2::collapsed(const Columns& columns, double y) const {
+    const double v = wrap(std::fmod(y, ny_ / per_y_) * per_y_, ny_);
+    const auto cell = static_cast<std::int32_t>(v);
+    const int n = columns.count + 3;
+    FftScratch<float> row(2 * static_cast<std::size_t>(n));
+    collapse_row(coefficients_.data() + static_cast<std::ptrdiff_t>(cell) * stride_ + columns.first, stride_, n,
+                 static_cast<float>(v - cell), row.data(), row.data() + n);
+    return row;
+}
+
+void PeriodicSpline2::add_row_gradients(const Columns& columns, double y, float weight, float* uv) const {
+    if (coefficients_.empty() || columns.count == 0) return;
+    const FftScratch<float> row = collapsed(columns, y);
+    FftScratch<GradientCell> cells(static_cast<std::size_t>(columns.count));
+    gradient_cells(row.data(), row.data() + columns.count + 3, columns.count, weight * static_cast<float>(per_x_), weight * static_cast<float>(per_y_), cells.data());
+    gradients_on_row(cells.data(), columns.cell.data(), columns.t.data(), static_cast<int>(columns.cell.size()), uv);
+}
+
+void PeriodicSpline2::add_row_values(const Columns& columns, double y, float weight, float* values) const {
+    if (coefficients_.empty() || columns.count == 0) return;
+    const FftScratch<float> row = collapsed(columns, y);
+    FftScratch<Float4> cells(static_cast<std::size_t>(columns.count));
+    value_cells(row.data(), columns.count, weight, cells.data());
+    values_on_row(cells.data(), columns.cell.data(), columns.t.data(), static_cast<int>(columns.cell.size()), values);
 }
 
 void PeriodicSpline2::add_values(double x0, double y0, double step_x, double step_y, int n, float weight,
                                  float* values) const {
     if (coefficients_.empty()) return;
+    if (step_y == 0 && n >= nx_ / 4) return add_row_values(columns(x0, step_x, n), y0, weight, values);
     const Line l = line(x0, y0, step_x, step_y);
     Block block;
     for (int begin = 0; begin < n; begin += kBlock) {

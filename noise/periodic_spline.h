@@ -13,14 +13,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "noise/fft.h"
 
 namespace eikonal {
-
-/// Along lines that cross less than 1/64 cell a point, the batches below interpolate their own gradient between knots
-/// 1/8 cell apart, which changes it by at most this fraction of its largest value (modes up to ω = π/2).
-inline constexpr double kSplineLineError = 2e-3;
 
 /// Transform and prefilter of one lattice shape, to be shared by many splines (planning takes longer than small ones).
 class SplinePlan2 {
@@ -53,10 +51,20 @@ class PeriodicSpline2 {
     /// At any finite position [m].
     Sample sample(double x, double y) const;
 
-    /// uv[2i], uv[2i+1] += weight · gradient at (x0 + i step_x, y0 + i step_y), i < n. Rows of constant y
-    /// are fastest.
-    void add_gradients(double x0, double y0, double step_x, double step_y, int n, float weight, float* uv) const;
-    /// values[i] += weight · value, likewise.
+    /// Where evenly spaced points of a row lie among the cells: the same for every row of a picture, so found once.
+    struct Columns {
+        std::vector<std::int32_t> cell;
+        std::vector<float> t;  ///< place within the cell, 0 … 1
+        int first = 0, count = 0;  ///< the cells among which they are
+    };
+    /// Points at x0 + i step_x, i < n.
+    Columns columns(double x0, double step_x, int n) const;
+    /// uv[2i], uv[2i+1] += weight · gradient at (column i, y). The fast way through whole rows.
+    void add_row_gradients(const Columns& columns, double y, float weight, float* uv) const;
+    /// values[i] += weight · value at (column i, y).
+    void add_row_values(const Columns& columns, double y, float weight, float* values) const;
+
+    /// values[i] += weight · value at (x0 + i step_x, y0 + i step_y), i < n: any line.
     void add_values(double x0, double y0, double step_x, double step_y, int n, float weight, float* values) const;
 
     /// Bytes held.
@@ -64,11 +72,13 @@ class PeriodicSpline2 {
 
   private:
     struct Line;
+    /// The taps along y collapsed at one y: the value for each coefficient along x, then ∂/∂v.
+    FftScratch<float> collapsed(const Columns& columns, double y) const;
     Line line(double x0, double y0, double step_x, double step_y) const;
 
     int nx_ = 0, ny_ = 0, stride_ = 0;
     double per_x_ = 0, per_y_ = 0;   // cells a metre
-    FftVector<float> coefficients_;  // (nx + 4) × (ny + 4): wrapped, so that no tap needs a modulo
+    FftVector<float> coefficients_;  // (ny + 4) × (nx + 4), x fastest; wrapped, so that no tap needs a modulo
 };
 
 }  // namespace eikonal

@@ -12,8 +12,8 @@
 namespace eikonal {
 namespace {
 
-constexpr int kSmallestSide = 16, kLargestGivenSide = 32768, kMostScreens = 4096, kMostSamples = 1 << 22;
-constexpr double kPeriodInOuterScales = 4;
+constexpr int kSmallestSide = 16, kLargestGivenSide = 32768, kMostGivenScreens = 4096, kMostSamples = 1 << 22;
+constexpr double kPeriodInOuterScales = 4;  // below it, coarser lattices
 
 int checked_count(const char* what, int value, int lowest, int highest) {
     if (value < lowest || value > highest)
@@ -28,16 +28,41 @@ double checked_period(const char* what, double value) {
     return value;
 }
 
-int screen_count(const TurbulenceSpec& spec, double far) {
-    const double most = std::max(1.0, std::floor(far / spec.outer_scale * (1 + 1e-9)));
-    if (!spec.lattice) return static_cast<int>(std::min(most, static_cast<double>(kScreens)));
-    const int count = checked_count("the number of screens (third)", (*spec.lattice)[2], 1, kMostScreens);
-    if (count > most)
-        throw UserError(fmt::format(
-            "turbulence: lattice: {} screens over {:g} m stand closer than the outer scale {:g} m and would "
-            "not be independent; at most {:g} here, or reduce outer_scale",
-            count, far, spec.outer_scale, most));
-    return count;
+/// Far ends of `count` slabs of which each is L0 or the part q of its far end's distance, whichever is thicker.
+std::vector<double> slab_ends(double L0, double q, int count) {
+    std::vector<double> ends;
+    double end = 0;
+    for (int m = 0; m < count; ++m) ends.push_back(end = std::max(end + L0, end / (1 - q)));
+    return ends;
+}
+
+/// Far ends of all slabs; the last is `far`.
+std::vector<double> layout_slabs(const TurbulenceSpec& spec, double far) {
+    const double L0 = spec.outer_scale;
+    const double most = std::max(1.0, std::floor(far / L0 * (1 + 1e-9)));
+    int count = 1;
+    if (spec.lattice) {
+        count = checked_count("the number of screens (third)", (*spec.lattice)[2], 1, kMostGivenScreens);
+        if (count > most)
+            throw UserError(fmt::format(
+                "turbulence: lattice: {} screens over {:g} m stand closer than the outer scale {:g} m and would "
+                "not be independent; at most {:g} here, or reduce outer_scale",
+                count, far, L0, most));
+    } else {
+        const double allowed = std::min(most, static_cast<double>(kMostScreens));
+        while (count < allowed && slab_ends(L0, kSlabGrowth, count).back() < far) ++count;
+    }
+    // The growth at which so many slabs end at `far`; then the rest of a metre is shared out.
+    double low = 0, high = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double q = 0.5 * (low + high);
+        (slab_ends(L0, q, count).back() < far ? low : high) = q;
+    }
+    std::vector<double> ends = slab_ends(L0, low, count);
+    const double scale = far / ends.back();
+    for (double& end : ends) end *= scale;
+    ends.back() = far;
+    return ends;
 }
 
 /// Loop over which eddies of the outer scale decorrelate eight times, 2/(√α k0) each.
@@ -54,7 +79,8 @@ struct Side {
 
 Side side(const TurbulenceSpec& spec, int axis, double width, double cell) {
     const char* const name = axis == 0 ? "x" : "y";
-    const double wanted = std::max(kPeriodInOuterScales * spec.outer_scale, width);
+    const double wanted = spec.spectrum == SpectrumKind::VonKarman ? std::max(kFewestCells * cell, width)
+                                                                   : std::max(kPeriodInOuterScales * spec.outer_scale, width);
     const auto n_for = [&](double period) {
         // a multiple of four: cheaper transforms
         const double cells =
@@ -76,16 +102,17 @@ std::vector<ScreenGeometry> layout_screens(const TurbulenceSpec& spec, const Scr
     if (!(view.far > 0) || !std::isfinite(view.far))
         throw UserError(
             fmt::format("turbulence: screens need a positive, finite path; the farthest depth is {} m", view.far));
-    const int count = screen_count(spec, view.far);
+    const std::vector<double> ends = layout_slabs(spec, view.far);
     const double T = spec.period ? checked_period("t", (*spec.period)[3]) : default_loop(spec, view.fps);
     std::vector<ScreenGeometry> screens;
-    for (int m = 0; m < count; ++m) {
+    for (std::size_t m = 0; m < ends.size(); ++m) {
         ScreenGeometry g;
-        g.thickness = view.far / count;
-        g.w = (m + 0.5) * g.thickness;
+        const double near = m > 0 ? ends[m - 1] : 0;
+        g.thickness = ends[m] - near;
+        g.w = 0.5 * (near + ends[m]);
         const double scale = view.perspective ? g.w : 1;
         g.aperture = view.aperture * (view.perspective ? 1 - g.w / view.far : 1);
-        const double golden = m * 0.6180339887498949;
+        const double golden = static_cast<double>(m) * 0.6180339887498949;
         const double finer = 1 - 0.15 * (golden - std::floor(golden));
         const double cell =
             finer * std::max({spec.inner_scale / kCellsPerInnerScale, g.aperture / 4, view.pixel * scale});

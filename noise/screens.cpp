@@ -21,14 +21,18 @@ PeriodicSpline2::Sample ScreenSnapshot::sample(double x, double y) const {
     return sum;
 }
 
-void ScreenSnapshot::add_gradients(double x0, double y0, double step_x, double step_y, int n, float weight,
-                                   float* uv) const {
-    for (const auto& band : bands_) band->add_gradients(x0 - drift_x_, y0 - drift_y_, step_x, step_y, n, weight, uv);
+ScreenSnapshot::Columns ScreenSnapshot::columns(double x0, double step_x, int n) const {
+    Columns result;
+    for (const auto& band : bands_) result.push_back(band->columns(x0 - drift_x_, step_x, n));
+    return result;
 }
 
-void ScreenSnapshot::add_values(double x0, double y0, double step_x, double step_y, int n, float weight,
-                                float* values) const {
-    for (const auto& band : bands_) band->add_values(x0 - drift_x_, y0 - drift_y_, step_x, step_y, n, weight, values);
+void ScreenSnapshot::add_gradients(const Columns& columns, double y, float weight, float* uv) const {
+    for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i]->add_row_gradients(columns[i], y - drift_y_, weight, uv);
+}
+
+void ScreenSnapshot::add_values(const Columns& columns, double y, float weight, float* values) const {
+    for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i]->add_row_values(columns[i], y - drift_y_, weight, values);
 }
 
 ScreenField::ScreenField(const TurbulenceSpec& spec, std::vector<ScreenGeometry> screens, const dvec3& e1,
@@ -69,12 +73,14 @@ double ScreenField::gradient_variance(std::size_t screen) const {
     return sum;
 }
 
+double ScreenField::lever(std::size_t screen, double D) const {
+    const ScreenGeometry& g = screens_[screen];
+    return slab_lever(g.w - 0.5 * g.thickness, g.w + 0.5 * g.thickness, D).length / D;
+}
+
 double ScreenField::displacement_angle_variance(double D) const {
     double sum = 0;
-    for (std::size_t m = 0; m < screens_.size(); ++m) {
-        const double weight = 1 - screens_[m].w / D;
-        if (weight > 0) sum += weight * weight * gradient_variance(m);
-    }
+    for (std::size_t m = 0; m < screens_.size(); ++m) sum += lever(m, D) * lever(m, D) * gradient_variance(m);
     return sum;
 }
 
@@ -87,8 +93,7 @@ double ScreenField::arrival_angle_variance() const {
 double ScreenField::focusing_variance(double D, bool perspective) const {
     double sum = 0;
     for (std::size_t m = 0; m < screens_.size(); ++m) {
-        const double weight = (1 - screens_[m].w / D) * (perspective ? screens_[m].w : D);
-        if (screens_[m].w >= D) continue;
+        const double weight = lever(m, D) * (perspective ? screens_[m].w : D);
         double curvature = 0;
         for (const ScreenBand& band : bands_[m]) curvature += band.curvature_variance();
         sum += weight * weight * curvature;

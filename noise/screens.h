@@ -31,9 +31,12 @@ class ScreenSnapshot {
 
     /// ψ [m] and ∇ψ [rad] at any finite position.
     PeriodicSpline2::Sample sample(double x, double y) const;
-    /// As PeriodicSpline2's: uv interleaved += weight ∇ψ; values += weight ψ.
-    void add_gradients(double x0, double y0, double step_x, double step_y, int n, float weight, float* uv) const;
-    void add_values(double x0, double y0, double step_x, double step_y, int n, float weight, float* values) const;
+    /// Where the points x0 + i step_x, i < n, lie on every lattice of this screen; the same for all rows.
+    using Columns = std::vector<PeriodicSpline2::Columns>;
+    Columns columns(double x0, double step_x, int n) const;
+    /// As PeriodicSpline2's: uv interleaved += weight ∇ψ; values += weight ψ, along the row at y.
+    void add_gradients(const Columns& columns, double y, float weight, float* uv) const;
+    void add_values(const Columns& columns, double y, float weight, float* values) const;
 
   private:
     friend class ScreenField;
@@ -54,18 +57,20 @@ class ScreenField {
 
     /// Discrete expectations (of the lattices, not the continuum), single axis [rad²]. Var ∂ψ of one screen:
     double gradient_variance(std::size_t screen) const;
-    /// Σ (1 - w/D)² var_m over w_m < D: the angle that an object at D seems displaced by. Continuum for a point
+    /// Σ (lever_m(D)/D)² var_m, the lever as slab_lever gives it: the angle that an object at D seems displaced by. Continuum for a point
     /// aperture and large L0: 1.093 Cn² D l0^(-1/3).
     double displacement_angle_variance(double D) const;
     /// Σ var_m: angle of arrival of parallel rays. Continuum: 3.28 Cn² L l0^(-1/3).
     double arrival_angle_variance() const;
-    /// Variance of ∂/∂x of the map's displacement at D: Σ (1 - w/D)² s² <(∂²ψ/∂x²)²> with s = w seen in perspective,
+    /// Variance of ∂/∂x of the map's displacement at D: Σ (lever/D)² s² <(∂²ψ/∂x²)²> with s = w seen in perspective,
     /// and s = D for parallel rays. Near 1 rays fold and first order fails. Continuum: 0.479 Cn² D³ l0^(-7/3) in
     /// perspective, ten times that for parallel rays. Curvature lives at the inner scale: cells coarser than l0/3 do
     /// not see, and so do not count, all of it.
     double focusing_variance(double D, bool perspective = true) const;
 
   private:
+    double lever(std::size_t screen, double D) const;  ///< as a part of D
+
     std::vector<ScreenGeometry> screens_;
     std::vector<std::vector<ScreenBand>> bands_;
     double velocity_x_, velocity_y_;

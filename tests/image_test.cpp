@@ -553,7 +553,7 @@ TEST_F(DepthTest, FindsItsChannelAndWindow) {
     EXPECT_EQ(metres(picture(values, TypeDesc::FLOAT, {"whatever"}), options), values);
     EXPECT_EQ(metres(picture({1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4}, TypeDesc::FLOAT, {"R", "G", "B"}), options), values);
     EXPECT_THROW(metres(picture({1, 1, 5, 2, 2, 2, 3, 3, 3, 4, 4, 4}, TypeDesc::FLOAT, {"R", "G", "B"}), options),
-                 FrameError);
+                 UserError);
     EXPECT_EQ(metres(picture({9, 1, 9, 2, 9, 3, 9, 4}, TypeDesc::FLOAT, {"A", "Depth"}), options), values);
     options.channel = "z";
     EXPECT_EQ(metres(picture(values, TypeDesc::FLOAT), options), values) << "case does not matter";

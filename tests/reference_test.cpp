@@ -126,6 +126,29 @@ TEST_F(ReferenceTest, CameraInsideASphereSeesItsFarSide) {
     });
 }
 
+/// A segment to a chosen point of a sphere and of a quad, at many distances: t = 1 up to kHitAccuracy.
+TEST_F(ReferenceTest, HitsAreSolvedInDouble) {
+    for (const double distance : {0.5, 20.0, 1000.0, 50000.0}) {
+        const dvec3 from{1.3, 2.7, 4.1}, to = from + distance * glm::normalize(dvec3(0.3, -0.2, -1));
+        ObjectSpec sphere, quad;
+        sphere.shape = ObjectShape::Sphere;
+        sphere.radius = distance / 7;
+        sphere.center = to + sphere.radius * glm::normalize(dvec3(0.1, 0.3, -1));
+        quad.shape = ObjectShape::Quad;
+        quad.normal = {0.2, 0.1, 1};
+        quad.size = {distance, distance};
+        quad.origin = to;
+        for (const ObjectSpec& object : {sphere, quad}) {
+            const Geometry geometry(scene_with({object}), from);
+            const auto hit = geometry.intersect(from, to - from, 0, 2);
+            ASSERT_TRUE(hit);
+            EXPECT_NEAR(hit->t, 1, kHitAccuracy) << distance;
+            EXPECT_TRUE(geometry.occluded(from, to - from, 0, 1.01));
+            EXPECT_FALSE(geometry.occluded(from, to - from, 0, 0.99));
+        }
+    }
+}
+
 /// Far from the origin of the world a float would be 8 mm off; the anchor keeps the answer exact.
 TEST_F(ReferenceTest, FarFromTheOriginOfTheWorld) {
     ObjectSpec sphere;

@@ -125,15 +125,19 @@ bool naive_edge(int& i, int n, Edge edge) {
 
 double naive_sample(const Image& in, int x, int y, int c, double u, double v, Filter filter, Edge edge) {
     const int ix = static_cast<int>(std::floor(u)), iy = static_cast<int>(std::floor(v));
-    double sum = 0, weights = 0;
+    double sum = 0, weights = 0, nearest = std::numeric_limits<double>::infinity();
     for (int j = -3; j <= 4; ++j)
         for (int i = -3; i <= 4; ++i) {
             const double w = kernel(filter, i - (u - ix)) * kernel(filter, j - (v - iy));
             weights += w;
             int column = x + ix + i - in.window.x0, row = y + iy + j - in.window.y0;
-            if (naive_edge(column, in.window.width, edge) && naive_edge(row, in.window.height, edge))
-                sum += w * in.at(in.window.x0 + column, in.window.y0 + row, c);
+            const bool lit = naive_edge(column, in.window.width, edge) && naive_edge(row, in.window.height, edge);
+            const double sample = lit ? in.at(in.window.x0 + column, in.window.y0 + row, c) : 0;
+            sum += w * sample;
+            if (std::abs(i - (u - ix)) < 1 && std::abs(j - (v - iy)) < 1) nearest = std::min(nearest, sample);
         }
+    if (filter == Filter::Cubic) return std::max(sum / weights, nearest - cubic_undershoot);
+    if (filter == Filter::Lanczos3) return std::max(sum / weights, nearest - lanczos3_undershoot);
     return sum / weights;
 }
 
@@ -304,6 +308,17 @@ TEST(Resample, OvershootStaysWithinTheStatedBound) {
             ASSERT_GE(v, -bound);
             ASSERT_LE(v, 1 + bound);
         }
+}
+
+TEST(Resample, HighlightsAreNotRingedInBlack) {
+    Image in({0, 0, 32, 32}, 4);
+    for (float& v : in.data) v = 0.3f;
+    for (int y = 15; y < 18; ++y)
+        for (int x = 15; x < 18; ++x)
+            for (int c = 0; c < 4; ++c) in.at(x, y, c) = 60;
+    const Image map = noise({0, 0, 32, 32}, 2, 5, -1, 1);
+    for (auto [filter, limit] : {std::pair{Filter::Cubic, cubic_undershoot}, {Filter::Lanczos3, lanczos3_undershoot}})
+        for (float v : run(in, map, {filter}).data) ASSERT_GE(v, 0.3f - limit);
 }
 
 TEST(Resample, ExtremeDisplacementsAreSafeAndDefined) {

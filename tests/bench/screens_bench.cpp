@@ -53,9 +53,10 @@ void spline_gradients(benchmark::State& state) {
     const PeriodicSpline2 spline(std::move(spectrum), 512, 512);
     const double step = 100.0 / (512.0 * static_cast<double>(state.range(0)));
     std::vector<float> uv(2 * 1920);
+    const auto columns = spline.columns(0.1, step, 1920);
     double y = 0;
     for (auto _ : state) {
-        spline.add_gradients(0.1, y += 0.002, step, 0, 1920, 1, uv.data());
+        spline.add_row_gradients(columns, y += 0.002, 1, uv.data());
         benchmark::DoNotOptimize(uv.data());
     }
     state.SetItemsProcessed(state.iterations() * 1920);

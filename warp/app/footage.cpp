@@ -24,6 +24,8 @@ void describe_picture(const std::filesystem::path& file, Footage& footage) {
     footage.display = display_window(part);
     footage.pixel_aspect = pixel_aspect(part);
     footage.source_bits = bits_of(part);
+    footage.channels = 0;
+    for (const Part& each : header.parts) footage.channels += each.spec.nchannels;
     footage.has_alpha = std::any_of(part.kinds.begin(), part.kinds.end(), [](ChannelKind k) { return k == ChannelKind::Alpha; });
     if (const auto* rate = part.spec.find_attribute("FramesPerSecond", OIIO::TypeRational)) {
         const int* r = static_cast<const int*>(rate->data());
@@ -60,10 +62,11 @@ FootageKind footage_kind(const std::filesystem::path& path) {
     return FilePattern::parse(path).is_sequence() ? FootageKind::Sequence : FootageKind::Still;
 }
 
-Footage find_footage(const std::filesystem::path& path) {
+Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted) {
     Footage footage;
     footage.files = FilePattern::parse(path);
     footage.kind = footage_kind(path);
+    if (path.empty()) throw UserError("INPUT: '' is no file name");
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         throw UserError(fmt::format("'{}' is a folder; name the files in it, e.g. '{}'", path.string(), (path / "plate.####.exr").string()));
@@ -79,12 +82,13 @@ Footage find_footage(const std::filesystem::path& path) {
     if (footage.frames.empty())
         throw FrameError(fmt::format("no file matches '{}'", path.string()));
     // a damaged first frame must not hide the others
+    const std::vector<int>& frames = wanted.empty() ? footage.frames : wanted;
     for (std::size_t i = 0;; ++i) {
         try {
-            describe_picture(footage.files.at(footage.frames[i]), footage);
+            describe_picture(footage.files.at(frames[i]), footage);
             return footage;
         } catch (const FrameError&) {
-            if (i + 1 == footage.frames.size()) throw;
+            if (i + 1 == frames.size()) throw;
         }
     }
 }

@@ -1,6 +1,7 @@
 /// eikonal: adds physically computed heat shimmer to footage. Declare options, validate, run, report.
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <cstdio>
 #include <exception>
@@ -9,8 +10,20 @@
 #include "warp/app/commands.h"
 #include "warp/app/interrupt.h"
 
+namespace {
+
+/// Frames are tens of megabytes, allocated and freed at every turn: keep the pages instead of asking for fresh ones.
+void keep_freed_memory() {
+    mallopt(M_ARENA_MAX, 1);  // large blocks can be kept by the main arena only
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, -1);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
     using namespace eikonal;
+    keep_freed_memory();
     constexpr int kFrameFailed = 1, kWrongUsage = 2;
     try {
         catch_interrupts();

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "noise/error.h"
+#include "warp/app/help_format.h"
 #include "warp/scene/message.h"
 
 namespace eikonal {
@@ -18,10 +19,26 @@ constexpr const char* kAbout =
     "Adds physically computed heat shimmer to images, image sequences and movies.\n\n"
     "  eikonal warp plate.jpg -o out.png --preset hot-road\n"
     "  eikonal warp plate.####.exr -o out.####.exr --scene air.toml --depth depth.####.exr:Z\n"
-    "  eikonal warp still.png -o shimmer.mp4 --frames 1-96 --preset gentle --rms 1.5\n";
+    "  eikonal warp still.png -o shimmer.mp4 --frames 1-96 --preset gentle --rms 1.5";
+
+constexpr const char* kAboutWarp =
+    "distort an image, a sequence or a movie\n\n"
+    "  eikonal warp plate.jpg -o out.png --preset hot-road --rms 2\n"
+    "  eikonal warp plate.####.exr -o out.####.exr --frames 1001-1100 --depth depth.####.exr:Z\n"
+    "  eikonal warp drive.mov -o shimmer.mov --preset hot-road --ground 1.5,55%";
+
+constexpr const char* kAboutMap =
+    "write displacement maps without any footage\n\n"
+    "  eikonal map --scene air.toml -o map.####.exr --frames 1-100 --stmap st.####.exr";
+
+constexpr const char* kAboutField =
+    "write slices of the refractive field, for analysis\n\n"
+    "  eikonal field --scene air.toml -o slice.####.exr --frame 12";
 
 constexpr const char* kFiles =
-    "\nFiles: one image, a sequence (#### four digits, @ one, %04d) or a movie. `eikonal COMMAND --help` tells more.";
+    "Files: one image, a sequence (#### four digits, @ one, %04d) or a movie.\n"
+    "Exit status: 0 all frames written, 1 some frame failed, 2 wrong usage.";
+constexpr const char* kMore = "`eikonal COMMAND --help` tells more.";
 
 template <class T>
 using Names = std::vector<std::pair<std::string, T>>;
@@ -50,10 +67,10 @@ std::string joined(const Names<T>& names) {
     return text;
 }
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& valid) {
+std::string suggestion(std::string_view word, const std::vector<std::string>& valid, const std::string& otherwise = "") {
     const std::vector<std::string_view> views(valid.begin(), valid.end());
     const std::string_view near = scene_file::nearest(word, views);
-    return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+    return near.empty() ? otherwise : fmt::format("; did you mean '{}'?", near);
 }
 
 /// An option whose value is one of a list of names.
@@ -129,6 +146,7 @@ void add_scene(CLI::App& app, SceneOptions& o) {
         ->type_name("N");
     add_number(app, "--fov", o.fov, "DEG", "horizontal field of view, instead of the scene's", "between 0 and 180 degrees",
                [](double v) { return v > 0 && v < 180; });
+    for (const char* name : {"--scene", "--preset", "--set", "--seed", "--fov"}) app.get_option(name)->group("Scene");
 }
 
 void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
@@ -185,8 +203,8 @@ void add_run(CLI::App& app, RunOptions& o) {
 }
 
 void add_warp(CLI::App& app, WarpOptions& o) {
-    app.add_option("INPUT", o.input, "image, sequence or movie")->required();
-    app.add_option("-o,--output", o.output, "image, sequence or movie")->required()->type_name("OUTPUT");
+    app.add_option("INPUT", o.input, "image, sequence or movie")->required()->group("Files");
+    app.add_option("-o,--output", o.output, "image, sequence or movie")->required()->type_name("OUTPUT")->group("Files");
     add_scene(app, o.scene);
     add_depth(app, o.depth, true);
     add_strength(app, o.strength);
@@ -214,7 +232,7 @@ void add_warp(CLI::App& app, WarpOptions& o) {
 }
 
 void add_map(CLI::App& app, MapOptions& o) {
-    app.add_option("-o,--output", o.output, "displacement map (EXR, channels u and v in pixels)")->required()->type_name("OUTPUT");
+    app.add_option("-o,--output", o.output, "displacement map (EXR, channels u and v in pixels)")->required()->type_name("OUTPUT")->group("Files");
     add_scene(app, o.scene);
     add_depth(app, o.depth, false);
     add_strength(app, o.strength);
@@ -224,7 +242,8 @@ void add_map(CLI::App& app, MapOptions& o) {
 void add_field(CLI::App& app, FieldOptions& o) {
     app.add_option("-o,--output", o.output, "one file a z-slice (EXR, channels n, F.x, F.y, F.z); #### is the slice")
         ->required()
-        ->type_name("OUTPUT");
+        ->type_name("OUTPUT")
+        ->group("Files");
     add_scene(app, o.scene);
     app.remove_option(app.get_option("--fov"));
     add_number(app, "--frame", o.frame, "F", "frame whose field is written (default: the scene's first)", "a number",
@@ -239,6 +258,7 @@ void add_field(CLI::App& app, FieldOptions& o) {
            "which medium of the scene, from 0 (default)")
         ->type_name("N");
     add_run(app, o.run);
+    for (const char* name : {"--frame", "--medium"}) app.get_option(name)->group("Field");
     for (const char* name : {"--frames", "--skip-bad-frames", "--report"}) app.remove_option(app.get_option(name));
 }
 
@@ -260,11 +280,12 @@ void add_field(CLI::App& app, FieldOptions& o) {
         for (const std::string& word : at->remaining(true)) {
             const std::string name = word.substr(0, word.find('='));
             if (name.rfind("--", 0) == 0)
-                throw UserError(fmt::format("{}: no such option of '{}'{}; see --help", name, at->get_name(), suggestion(name, valid)));
+                throw UserError(fmt::format("{}: '{}' has no such option{}", name, at->get_name(), suggestion(name, valid, "; see --help")));
             throw UserError(fmt::format("'{}': too many arguments for '{}'; see --help", word, at->get_name()));
         }
     std::string text = error.what();
     std::replace(text.begin(), text.end(), '\n', ' ');
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) text = text.substr(0, text.find(':')) + ": its value is missing";
     throw UserError(fmt::format("{}; see 'eikonal {} --help'", text, at == &app ? "" : at->get_name()));
 }
 
@@ -286,21 +307,22 @@ void check(DepthArguments& o) {
 Command parse_options(int argc, const char* const* argv) {
     CLI::App app{kAbout};
     app.name("eikonal");
-    app.footer(kFiles);
+    app.footer(kMore);
     app.require_subcommand(1);
     app.set_version_flag("--version", kVersion);
-    app.get_formatter()->column_width(34);
+    app.formatter(std::make_shared<HelpFormat>());
 
     WarpOptions warp;
     MapOptions map;
     FieldOptions field;
-    auto* warp_command = app.add_subcommand("warp", "distort an image, a sequence or a movie");
+    auto* warp_command = app.add_subcommand("warp", kAboutWarp);
     add_warp(*warp_command, warp);
-    auto* map_command = app.add_subcommand("map", "write displacement maps without any footage");
+    auto* map_command = app.add_subcommand("map", kAboutMap);
     add_map(*map_command, map);
-    auto* field_command = app.add_subcommand("field", "write slices of the refractive field, for analysis");
+    auto* field_command = app.add_subcommand("field", kAboutField);
     add_field(*field_command, field);
     app.add_subcommand("presets", "list the presets, a line each");
+    for (CLI::App* command : {warp_command, map_command, field_command}) command->footer(kFiles);
 
     std::vector<std::string> words(argv + 1, argv + argc);
     try {

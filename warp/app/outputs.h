@@ -1,8 +1,7 @@
-/// The files that a run writes: OUTPUT and what lies beside it. Checked as a whole before anything runs.
+/// The files that a run writes: OUTPUT, what lies beside it, the report. Checked as a whole before anything runs.
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,29 +9,39 @@
 
 namespace eikonal {
 
-/// One of the outputs: -o, --stmap, --displacement.
-struct Output {
-    std::string option;  ///< how the user named it
-    FilePattern files;
-    bool movie = false;
+enum class OutputKind {
+    Pictures,  ///< one a frame, in any image format, or a movie
+    Maps,      ///< one EXR a frame
+    Report,    ///< one file a run
+};
 
-    std::filesystem::path at(int frame) const { return files.at(frame); }
+/// Files that belong to one option, read or written.
+struct NamedFiles {
+    std::string option;  ///< how the user named them: "-o", "--depth", "the input"
+    FilePattern files;
+    bool single = false;  ///< one file whatever its name looks like: a movie, a report
+
+    std::filesystem::path at(int frame) const { return single ? files.text() : files.at(frame); }
 };
 
 class Outputs {
   public:
-    /// Adds an output. `movies`: whether it may be a movie. UserError: a movie where none can be, a folder that is not there.
-    void add(const std::string& option, const std::filesystem::path& path, bool movies);
+    /// UserError: no file name, a format that cannot be written or cannot hold this, a folder that is not there, something
+    /// at that name that is not a file.
+    void add(const std::string& option, const std::filesystem::path& path, OutputKind kind);
 
-    /// UserError: one file for many frames; an output that is an input; two outputs that are the same file.
-    void check(const std::vector<int>& frames, const std::vector<FilePattern>& inputs) const;
+    /// UserError: one file for many frames; an output that is an input, or a frame of it; two outputs that are one file.
+    void check(const std::vector<int>& frames, const std::vector<NamedFiles>& inputs) const;
 
-    /// Whether all files of a frame are there (they appear only when whole).
+    /// Whether all of a frame's files are there (they appear only when whole).
     bool finished(int frame) const;
-    const Output* find(const std::string& option) const;
-    const std::vector<Output>& all() const { return outputs_; }
+    /// The files of an option, or null.
+    const NamedFiles* find(const std::string& option) const;
 
   private:
+    struct Output : NamedFiles {
+        OutputKind kind;
+    };
     std::vector<Output> outputs_;
 };
 

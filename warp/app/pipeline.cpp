@@ -13,6 +13,7 @@
 #include "noise/error.h"
 #include "warp/app/interrupt.h"
 #include "warp/app/progress.h"
+#include "warp/displace/displacer.h"
 
 namespace eikonal {
 namespace {
@@ -39,7 +40,12 @@ bool RunResult::failed() const {
 
 int thread_count(const RunOptions& options) { return options.threads > 0 ? options.threads : tbb::info::default_concurrency(); }
 
-RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads) {
+RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads, double frame_bytes) {
+    const auto memory = static_cast<double>(memory_limit());
+    if (frame_bytes > memory)
+        throw UserError(fmt::format("a frame of this size needs {:.3g} GB of memory, {:.3g} GB are available; use smaller pictures",
+                                    frame_bytes / 1e9, memory / 1e9));
+    const auto in_flight = static_cast<std::size_t>(std::clamp(memory / std::max(frame_bytes, 1.0), 1.0, double(threads + kFramesAhead)));
     RunResult result;
     Progress progress(options.progress, total, total == 1 ? "frame" : "frames");
     std::atomic<bool> stop{false};
@@ -76,17 +82,28 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
         FrameRecord& record = item->record;
         if (record.error.empty() && !broken) guarded(record, [&] { stages.finish(*item); });
         if (!record.error.empty()) {
-            progress.line(fmt::format("frame {}: {}", record.frame, record.error));
+            progress.line(fmt::format("eikonal: frame {}: {}", record.frame, record.error));
             if (!options.skip_bad_frames) stop = broken = true;
         }
         result.records.push_back(record);
         progress.step();
     };
-    tbb::parallel_pipeline(static_cast<std::size_t>(threads + kFramesAhead),
+    tbb::parallel_pipeline(in_flight,
                            tbb::make_filter<void, FrameItem*>(tbb::filter_mode::serial_in_order, take) &
                                tbb::make_filter<FrameItem*, FrameItem*>(tbb::filter_mode::parallel, work) &
                                tbb::make_filter<FrameItem*, void>(tbb::filter_mode::serial_in_order, finish));
     return result;
+}
+
+void print_outcome(const RunResult& result, const RunOptions& options, std::size_t total, const std::string& rest) {
+    const auto bad = static_cast<std::size_t>(std::count_if(result.records.begin(), result.records.end(),
+                                                            [](const FrameRecord& r) { return !r.error.empty(); }));
+    const std::size_t written = result.records.size() - bad;
+    if (result.interrupted)
+        fmt::print(stderr, "eikonal: interrupted after {} of {} frames; {}\n", written, total, rest);
+    else if (bad > 0 && total > 1)
+        fmt::print(stderr, "eikonal: {} of {} frames done; {}\n", written, total,
+                   options.skip_bad_frames ? "the bad ones were skipped" : rest + "; --skip-bad-frames passes over bad frames");
 }
 
 }  // namespace eikonal

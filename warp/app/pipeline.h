@@ -1,5 +1,6 @@
 /// Frames through a bounded pipeline: taken in order, worked on in parallel, finished in order. Reading, warping and
-/// writing of different frames overlap; no more than kFramesAhead frames beyond the number of threads are in memory.
+/// writing of different frames overlap; no more than kFramesAhead frames beyond the number of threads are in memory, fewer
+/// where they are so large that memory_limit() does not hold them.
 ///
 /// A frame that fails is reported as "frame F: reason" and the others go on or, unless skip_bad_frames, no more are begun.
 /// An interrupt ends the run after the frames under way. Nothing already finished is lost either way.
@@ -47,7 +48,11 @@ struct Stages {
     std::function<void(FrameItem&)> finish;
 };
 
-RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads);
+/// frame_bytes: of memory that one frame takes on its way, about. UserError: more than there is.
+RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads, double frame_bytes);
+
+/// Tells on stderr how a run ended that did not make all frames. `rest`: what becomes of them.
+void print_outcome(const RunResult& result, const RunOptions& options, std::size_t total, const std::string& rest);
 
 /// Number of threads that a run uses: --threads or all processors.
 int thread_count(const RunOptions& options);

@@ -41,7 +41,7 @@ void describe(Slices& slices, const std::array<double, 4>& period, const std::ar
 
 Slices lattice_slices(const TurbulenceSpec& spec, double t, double exaggeration, double force_factor) {
     const LatticeGeometry g = choose_lattice(spec);
-    check_lattice(spec, g, std::numeric_limits<std::uint64_t>::max());
+    check_lattice(spec, g, memory_limit());
     const LatticeField field(spec, g);
     auto nodes = std::make_shared<std::array<FftVector<float>, kChannels>>();
     constexpr std::array kComponents{Component::Index, Component::ForceX, Component::ForceY, Component::ForceZ};
@@ -91,7 +91,7 @@ Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, d
                           0.5 * resolution[0] / camera.f_px, 0.5 * resolution[1] / camera.f_px, 1 / camera.f_px, scene.optics.aperture,
                           scene.time.fps.value_or(kDefaultFps)};
     const std::vector<ScreenGeometry> geometry = layout_screens(spec, view);
-    check_screens(spec, geometry, std::numeric_limits<std::uint64_t>::max());
+    check_screens(spec, geometry, memory_limit());
     auto screens = std::make_shared<const std::vector<ScreenSnapshot>>(ScreenField(spec, geometry, camera.right, camera.up).at(t));
     int width = 0, height = 0;
     for (const ScreenGeometry& g : geometry) {
@@ -143,11 +143,13 @@ int run(const FieldOptions& options) {
     set_image_threads(threads);
     const Scene scene = load_scene(options.scene);
     Outputs outputs;
-    outputs.add("-o", options.output, false);
+    outputs.add("-o", options.output, OutputKind::Maps);
     const Slices slices = make_slices(options, scene);
     std::vector<int> numbers(static_cast<std::size_t>(slices.count));
     for (int i = 0; i < slices.count; ++i) numbers[static_cast<std::size_t>(i)] = i;
-    outputs.check(numbers, {});
+    std::vector<NamedFiles> inputs;
+    if (!scene.file.empty()) inputs.push_back({"the scene", FilePattern::parse(scene.file), true});
+    outputs.check(numbers, inputs);
     if (options.run.verbose)
         fmt::print(stderr, "eikonal: {} slices of {} x {} samples\n", slices.count, slices.width, slices.height);
 

@@ -14,6 +14,8 @@ namespace eikonal {
 namespace {
 
 constexpr int kDefaultWidth = 1920, kDefaultHeight = 1080;
+/// Memory of a pixel on its way: map, depth, matte, and the map and the STMap as they are written.
+constexpr double kMapBytes = 8 + 8 + 12 + 2 * 12;
 
 /// Resolution: the scene's, else that of the depth map's first frame, else 1920 x 1080.
 PixelWindow choose_display(const Scene& scene, const DepthArguments& depth, int frame) {
@@ -33,16 +35,15 @@ int run(const MapOptions& options) {
 
     Scene scene = load_scene(options.scene);
     Outputs outputs;
-    outputs.add("-o", options.output, false);
-    if (options.strength.stmap) outputs.add("--stmap", *options.strength.stmap, false);
+    outputs.add("-o", options.output, OutputKind::Maps);
+    if (options.strength.stmap) outputs.add("--stmap", *options.strength.stmap, OutputKind::Maps);
+    if (options.run.report) outputs.add("--report", *options.run.report, OutputKind::Report);
     if (options.depth.depth && options.depth.depth->starts_with(':'))
         throw UserError(fmt::format("--depth {}: map has no INPUT whose channel it could be; name a file", *options.depth.depth));
     std::vector<int> frames = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{scene.time.first_frame};
     const PixelWindow display = choose_display(scene, options.depth, frames.front());
     const Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {});
-    std::vector<FilePattern> inputs;
-    if (shot.depth().files()) inputs.push_back(*shot.depth().files());
-    outputs.check(frames, inputs);
+    outputs.check(frames, shot.companions());
     if (options.run.verbose)
         for (const std::string& note : shot.notes()) fmt::print(stderr, "eikonal: {}\n", note);
     for (const std::string& warning : shot.displacer().warnings()) fmt::print(stderr, "eikonal: warning: {}\n", warning);
@@ -51,8 +52,8 @@ int run(const MapOptions& options) {
     const std::size_t kept = asked - frames.size();
     if (kept > 0)
         fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept, kept == 1 ? " is" : "s are");
-    if (kept > 0 && frames.empty()) return 0;
     if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
+    if (!frames.empty()) shot.try_companions(frames.front(), nullptr, {}, display);
 
     std::size_t next = 0;
     const Stages stages{
@@ -69,15 +70,14 @@ int run(const MapOptions& options) {
             const MapStatistics size = statistics(map);
             item.record.rms = size.rms;
             item.record.largest = size.largest;
-            if (const Output* stmap = outputs.find("--stmap")) write_stmap(stmap->at(frame), map, display);
+            if (const NamedFiles* stmap = outputs.find("--stmap")) write_stmap(stmap->at(frame), map, display);
             write_displacement(outputs.find("-o")->at(frame), map, display);
         },
         [](FrameItem&) {}};
-    const RunResult result = run_pipeline(stages, options.run, frames.size(), threads);
+    RunResult result;
+    if (!frames.empty()) result = run_pipeline(stages, options.run, frames.size(), threads, kMapBytes * static_cast<double>(display.area()));
     if (options.run.report) write_report(*options.run.report, shot, result, kept);
-    if (result.interrupted)
-        fmt::print(stderr, "eikonal: interrupted after {} of {} frames; the same command goes on where this one stopped\n",
-                   result.records.size(), frames.size());
+    print_outcome(result, options.run, frames.size(), "the same command makes the rest");
     return result.failed() ? 1 : 0;
 }
 

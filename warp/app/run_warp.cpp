@@ -23,15 +23,20 @@ struct PlateItem : FrameItem {
     std::optional<MovieFrame> encoded;  ///< for a movie output
 };
 
-/// Frames to warp: the user's list, or all there are.
-std::vector<int> choose_frames(const WarpOptions& options, const Footage& footage, int first_frame, bool& hole) {
-    std::vector<int> frames = options.run.frames ? parse_frames(*options.run.frames) : footage.frames;
+/// Memory of a pixel on its way: linear colour in and out and of one instant, map, depth, matte, STMap; then as read.
+constexpr double kPixelBytes = 3 * 16 + 8 + 8 + 12;
+constexpr double kChannelBytes = 2 * 4;
+
+/// Frames to warp: the user's list `wanted`, or all there are.
+std::vector<int> choose_frames(const WarpOptions& options, const Footage& footage, const std::vector<int>& wanted, int first_frame, bool& hole) {
+    std::vector<int> frames = options.run.frames ? wanted : footage.frames;
     if (footage.kind == FootageKind::Still) return options.run.frames ? frames : std::vector<int>{first_frame};
     if (footage.kind == FootageKind::Movie) {
         std::sort(frames.begin(), frames.end());
         const auto last = static_cast<int>(footage.frames.size());
         if (options.run.frames && (frames.front() < 1 || (last > 0 && frames.back() > last)))
-            throw UserError(fmt::format("--frames {}: '{}' has frames 1 to {}", *options.run.frames, options.input.string(), last));
+            throw UserError(fmt::format("--frames {}: the frames of '{}' are 1 to {}", *options.run.frames, options.input.string(),
+                                        last > 0 ? fmt::to_string(last) : "its last"));
         return frames;
     }
     std::vector<int> missing;
@@ -69,7 +74,7 @@ class WarpRun {
         } else if (footage.kind == FootageKind::Still) {
             still_ = read_picture(options.input);
         }
-        if (output_.movie) open_movie();
+        if (output_.single) open_movie();
     }
 
     std::unique_ptr<FrameItem> take() {
@@ -112,13 +117,15 @@ class WarpRun {
         const std::vector<DisplacementMap> maps =
             shot_.maps(frame, offsets_, picture, picture != nullptr ? file : options_.input, plate_window(item.plate));
         const DisplacementMap& middle = maps[maps.size() / 2];
-        const MapStatistics size = statistics(middle);
-        item.record.rms = size.rms;
-        item.record.largest = size.largest;
-        if (const Output* stmap = outputs_.find("--stmap")) write_stmap(stmap->at(frame), middle, display);
-        if (const Output* displacement = outputs_.find("--displacement")) write_displacement(displacement->at(frame), middle, display);
+        if (options_.run.report) {
+            const MapStatistics size = statistics(middle);
+            item.record.rms = size.rms;
+            item.record.largest = size.largest;
+        }
+        if (const NamedFiles* stmap = outputs_.find("--stmap")) write_stmap(stmap->at(frame), middle, display);
+        if (const NamedFiles* displacement = outputs_.find("--displacement")) write_displacement(displacement->at(frame), middle, display);
         warp_plate(item.plate, maps, {options_.filter, options_.edge, options_.dispersion});
-        if (output_.movie) {
+        if (output_.single) {
             if (picture == nullptr) item.encoded = std::move(std::get<MovieFrame>(item.plate));
             else item.encoded = frame_from_linear(main_colour(item.plate), *movie_format_, main_is_grey(*picture));
             item.plate = Picture{};
@@ -174,7 +181,7 @@ class WarpRun {
     const Outputs& outputs_;
     std::vector<int> frames_;
     std::vector<double> offsets_;
-    const Output& output_;
+    const NamedFiles& output_;
     std::optional<MovieReader> reader_;
     std::optional<MovieWriter> writer_;
     std::optional<MovieFormat> movie_format_;
@@ -182,6 +189,30 @@ class WarpRun {
     std::size_t next_ = 0;
     int failing_ = 0;
 };
+
+/// Finds wrong options of depth and matte before the first frame is begun.
+void try_companions(const Footage& footage, const Shot& shot, int frame) {
+    const std::filesystem::path file = footage.files.at(frame);
+    if (footage.kind == FootageKind::Movie) return shot.try_companions(frame, nullptr, file, footage.display);
+    try {
+        const Plate plate = shot.depth().inside_input() ? read_picture(file) : read_picture_header(file);
+        shot.try_companions(frame, &std::get<Picture>(plate), file, plate_window(plate));
+    } catch (const FrameError&) {
+        // the frame's own trouble, told when its turn comes
+    }
+}
+
+RunResult warp_frames(const WarpOptions& options, const Footage& footage, const Shot& shot, const Outputs& outputs,
+                      const std::vector<int>& frames, int threads) {
+    try_companions(footage, shot, frames.empty() ? 1 : frames.front());
+    WarpRun warp(options, footage, shot, outputs, frames);
+    const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); }, [&](FrameItem& item) { warp.work(item); },
+                        [&](FrameItem& item) { warp.finish(item); }};
+    const double bytes = static_cast<double>(footage.display.area()) * (kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
+    RunResult result = run_pipeline(stages, options.run, frames.size(), threads, bytes);
+    if (!result.interrupted && (options.run.skip_bad_frames || !result.failed())) warp.close();
+    return result;
+}
 
 void print_lines(const std::vector<std::string>& lines, const char* prefix) {
     for (const std::string& line : lines) fmt::print(stderr, "eikonal: {}{}\n", prefix, line);
@@ -196,17 +227,20 @@ int run(const WarpOptions& options) {
 
     Scene scene = load_scene(options.scene);
     Outputs outputs;
-    outputs.add("-o", options.output, true);
-    if (options.strength.stmap) outputs.add("--stmap", *options.strength.stmap, false);
-    if (options.displacement) outputs.add("--displacement", *options.displacement, false);
-    const Footage footage = find_footage(options.input);
+    outputs.add("-o", options.output, OutputKind::Pictures);
+    if (options.strength.stmap) outputs.add("--stmap", *options.strength.stmap, OutputKind::Maps);
+    if (options.displacement) outputs.add("--displacement", *options.displacement, OutputKind::Maps);
+    if (options.run.report) outputs.add("--report", *options.run.report, OutputKind::Report);
+    const bool to_movie = outputs.find("-o")->single;
+    const std::vector<int> wanted = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{};
+    const Footage footage = find_footage(options.input, wanted);
     print_lines(footage.notes, "warning: ");
     bool hole = false;
-    std::vector<int> frames = choose_frames(options, footage, scene.time.first_frame, hole);
+    std::vector<int> frames = choose_frames(options, footage, wanted, scene.time.first_frame, hole);
     const Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
                     footage.fps ? std::optional(footage.fps->value()) : std::nullopt);
-    std::vector<FilePattern> inputs{footage.files};
-    if (shot.depth().files()) inputs.push_back(*shot.depth().files());
+    std::vector<NamedFiles> inputs = shot.companions();
+    inputs.push_back({"the input", footage.files, footage.kind == FootageKind::Movie});
     outputs.check(frames, inputs);
     if (options.run.verbose) print_lines(shot.notes(), "");
     print_lines(shot.displacer().warnings(), "warning: ");
@@ -214,7 +248,7 @@ int run(const WarpOptions& options) {
     std::size_t kept = 0;
     if (!options.run.overwrite) {
         const std::size_t before = frames.size();
-        if (outputs.find("-o")->movie) {
+        if (to_movie) {
             std::error_code ignored;
             if (std::filesystem::exists(options.output, ignored)) {
                 fmt::print(stderr, "eikonal: '{}' is already there and kept; --overwrite makes it anew\n", options.output.string());
@@ -226,20 +260,12 @@ int run(const WarpOptions& options) {
         kept = before - frames.size();
         if (kept > 0)
             fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept, kept == 1 ? " is" : "s are");
-        if (kept > 0 && frames.empty()) return hole ? 1 : 0;
     }
     if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
-
-    WarpRun warp(options, footage, shot, outputs, frames);
-    const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); }, [&](FrameItem& item) { warp.work(item); },
-                        [&](FrameItem& item) { warp.finish(item); }};
-    const RunResult result = run_pipeline(stages, options.run, frames.size(), threads);
-    const bool complete = !result.interrupted && (options.run.skip_bad_frames || !result.failed());
-    if (complete) warp.close();
+    RunResult result;
+    if (kept == 0 || !frames.empty()) result = warp_frames(options, footage, shot, outputs, frames, threads);
     if (options.run.report) write_report(*options.run.report, shot, result, kept);
-    if (result.interrupted)
-        fmt::print(stderr, "eikonal: interrupted after {} of {} frames; {}\n", result.records.size(), frames.size(),
-                   outputs.find("-o")->movie ? "the movie was not written" : "the same command goes on where this one stopped");
+    print_outcome(result, options.run, frames.size(), to_movie ? "the movie was not written" : "the same command makes the rest");
     return result.failed() || hole ? 1 : 0;
 }
 

@@ -75,6 +75,23 @@ std::optional<std::string> Shot::missing_companion(const std::vector<int>& frame
     return check(mask_, "mask");
 }
 
+void Shot::try_companions(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& window) const {
+    try {
+        if (!depth_.constant()) depth_.plane(frame, input, input_file, window, display_, displacer_->camera(frame));
+        if (mask_) read_matte(mask_->at(frame), mask_channel_, window, display_);
+    } catch (const FrameError&) {
+        // this frame's own trouble, told when its turn comes
+    }
+}
+
+std::vector<NamedFiles> Shot::companions() const {
+    std::vector<NamedFiles> files;
+    if (!scene_.file.empty()) files.push_back({"the scene", FilePattern::parse(scene_.file), true});
+    if (depth_.files()) files.push_back({"--depth", *depth_.files()});
+    if (mask_) files.push_back({"--mask", *mask_});
+    return files;
+}
+
 std::vector<DisplacementMap> Shot::maps(int frame, const std::vector<double>& offsets, const Picture* input,
                                         const std::filesystem::path& input_file, const PixelWindow& window) const {
     std::optional<DepthPlane> plane;

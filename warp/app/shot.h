@@ -8,6 +8,7 @@
 #include "warp/app/depth_input.h"
 #include "warp/app/footage.h"
 #include "warp/app/options.h"
+#include "warp/app/outputs.h"
 #include "warp/app/warp_plate.h"
 #include "warp/displace/displacer.h"
 
@@ -36,8 +37,12 @@ class Shot {
     std::vector<DisplacementMap> maps(int frame, const std::vector<double>& offsets, const Picture* input,
                                       const std::filesystem::path& input_file, const PixelWindow& window) const;
 
-    /// Frames among `frames` whose depth map or matte is missing, with the first missing file's name.
+    /// Looks at the depth maps and mattes before any frame is begun: one line on the first that is missing. UserError: the
+    /// first frame's cannot be what the options say of it. `input`: as for maps().
     std::optional<std::string> missing_companion(const std::vector<int>& frames) const;
+    void try_companions(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& window) const;
+    /// Files that are read besides the footage.
+    std::vector<NamedFiles> companions() const;
 
   private:
     Scene scene_;

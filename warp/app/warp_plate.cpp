@@ -45,19 +45,37 @@ std::vector<std::uint8_t> moved_pixels(const std::vector<DisplacementMap>& maps,
     return moved;
 }
 
-LinearImage resampled(const LinearImage& in, const std::vector<DisplacementMap>& maps, const WarpSettings& settings, bool colour) {
+/// Tens of megabytes that a thread keeps from frame to frame instead of clearing fresh pages for each.
+struct Workspace {
+    LinearImage in, out;
+    std::vector<float> instant;
+};
+
+Workspace& workspace() {
+    static thread_local Workspace space;
+    return space;
+}
+
+/// Resamples space.in into space.out.
+void resample_all(Workspace& space, const std::vector<DisplacementMap>& maps, const WarpSettings& settings, bool colour) {
+    const LinearImage& in = space.in;
+    LinearImage& out = space.out;
     ResampleOptions options{settings.filter, settings.edge, {1, 1, 1, 1}};
     if (colour && settings.dispersion != 0)
         options.channel_scale = {static_cast<float>(dispersion_scale(kRedWavelength, settings.dispersion)),
                                  static_cast<float>(dispersion_scale(kGreenWavelength, settings.dispersion)),
                                  static_cast<float>(dispersion_scale(kBlueWavelength, settings.dispersion)), 1};
-    LinearImage out{in.data, in.display, in.pixel_aspect, std::vector<float>(in.pixels.size())};
+    out.data = in.data;
+    out.display = in.display;
+    out.pixel_aspect = in.pixel_aspect;
+    out.pixels.resize(in.pixels.size());
     const auto stride = 4 * static_cast<std::ptrdiff_t>(in.data.width);
     const ImageView source{in.pixels.data(), in.data, 4, stride};
     resample(source, view_of(maps.front(), in.data), {out.pixels.data(), in.data, 4, stride}, options);
-    if (maps.size() == 1) return out;
+    if (maps.size() == 1) return;
     // Sums run over the samples in order, pixel by pixel: the same for any number of threads.
-    std::vector<float> instant(in.pixels.size());
+    std::vector<float>& instant = space.instant;
+    instant.resize(in.pixels.size());
     for (std::size_t m = 1; m < maps.size(); ++m) {
         resample(source, view_of(maps[m], in.data), {instant.data(), in.data, 4, stride}, options);
         for_rows(in.data, [&](int y) {
@@ -70,7 +88,6 @@ LinearImage resampled(const LinearImage& in, const std::vector<DisplacementMap>&
         const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(stride);
         for (std::size_t i = first; i < first + static_cast<std::size_t>(stride); ++i) out.pixels[i] *= share;
     });
-    return out;
 }
 
 void move_data(Part& part, const Part& source, const DataMover& mover, const DisplacementMap& map, Edge edge) {
@@ -96,8 +113,12 @@ void warp_picture(Picture& picture, const std::vector<DisplacementMap>& maps, co
     for (Part& part : picture.parts) {
         const PixelWindow window = data_window(part);
         const std::vector<std::uint8_t> moved = moved_pixels(maps, window);
-        for (const ChannelGroup& group : part.groups)
-            store_group(part, group, resampled(load_group(part, group), maps, settings, group.count == 3), moved);
+        Workspace& space = workspace();
+        for (const ChannelGroup& group : part.groups) {
+            load_group(part, group, space.in);
+            resample_all(space, maps, settings, group.count == 3);
+            store_group(part, group, space.out, moved);
+        }
         const DataMover mover(part);
         if (mover.empty()) continue;
         const Part source = part;  // colour of it is not read, only its data channels
@@ -133,8 +154,10 @@ void warp_plate(Plate& plate, const std::vector<DisplacementMap>& maps, const Wa
         return;
     }
     auto& frame = std::get<MovieFrame>(plate);
-    const LinearImage in = load_frame(frame);
-    store_frame(frame, resampled(in, maps, settings, !frame.format.gray), moved_pixels(maps, in.data));
+    Workspace& space = workspace();
+    load_frame(frame, space.in);
+    resample_all(space, maps, settings, !frame.format.gray);
+    store_frame(frame, space.out, moved_pixels(maps, space.in.data));
 }
 
 LinearImage main_colour(const Plate& plate) {

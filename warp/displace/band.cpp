@@ -35,30 +35,23 @@ EIKONAL_CLONES void weighted_lines(const Node* in, std::size_t stride, std::size
                  splat(w[3]) * in[i + 3 * stride] + splat(w[4]) * in[i + 4 * stride] + splat(w[5]) * in[i + 5 * stride];
 }
 
-/// The two layers around z and how to mix them: X = a·lower + b·upper, where a and b act on (X, S) of a node.
-struct Mix {
-    std::size_t lower, upper;
-    float x_lower, s_lower, x_upper, s_upper;
-};
+using Mix = BandRow::Mix;
 
 Mix mix_at(const Band& band, double z) {
     const auto& depths = band.depths;
     const std::size_t last = depths.size() - 1;
-    const double divisor = band.perspective ? z : 1.0;
-    const auto scaled = [&](double v) { return static_cast<float>(v / divisor); };
-    if (z == depths.front() || depths.size() == 1) {
-        if (z <= depths[0]) return {0, 0, scaled(z / depths[0]), 0, 0, 0};
-        return {0, 0, scaled(1), scaled(z - depths[0]), 0, 0};
-    }
-    if (z < depths.front()) return {0, 0, scaled(z / depths[0]), 0, 0, 0};
-    if (z >= depths[last]) return {last, last, scaled(1), scaled(z - depths[last]), 0, 0};
+    const double scale = band.perspective ? 1 / z : 1.0;
+    const auto scaled = [&](double v) { return static_cast<float>(v * scale); };
+    if (z <= depths.front()) return {z, 0, 0, band.perspective ? static_cast<float>(1 / depths[0]) : static_cast<float>(z / depths[0]), 0, 0, 0};
+    if (z >= depths[last]) return {z, last, last, scaled(1), scaled(z - depths[last]), 0, 0};
     const auto upper = static_cast<std::size_t>(std::upper_bound(depths.begin(), depths.end(), z) - depths.begin());
     const std::size_t lower = upper - 1;
     const double length = depths[upper] - depths[lower];
     const double t = (z - depths[lower]) / length;
-    if (band.interpolation == DepthInterpolation::Linear) return {lower, upper, scaled(1 - t), 0, scaled(t), 0};
+    if (band.interpolation == DepthInterpolation::Linear) return {z, lower, upper, scaled(1 - t), 0, scaled(t), 0};
     const double t2 = t * t, t3 = t2 * t;
-    return {lower,
+    return {z,
+            lower,
             upper,
             scaled(2 * t3 - 3 * t2 + 1),
             scaled((t3 - 2 * t2 + t) * length),
@@ -81,24 +74,39 @@ void Band::scale(float gain) {
 }
 
 void Band::cover(const PixelWindow& pixels) {
-    column0 = floor_div(pixels.x0, spacing) - kBefore;
-    row0 = floor_div(pixels.y0, spacing) - kBefore;
-    columns = floor_div(pixels.x0 + pixels.width - 1, spacing) - kBefore + kTaps - column0;
-    rows = floor_div(pixels.y0 + pixels.height - 1, spacing) - kBefore + kTaps - row0;
+    const int taps = spacing > 1 ? kTaps : 1;
+    column0 = floor_div(pixels.x0, spacing) - before();
+    row0 = floor_div(pixels.y0, spacing) - before();
+    columns = floor_div(pixels.x0 + pixels.width - 1, spacing) - before() + taps - column0;
+    rows = floor_div(pixels.y0 + pixels.height - 1, spacing) - before() + taps - row0;
     weights.resize(static_cast<std::size_t>(spacing));
     for (int p = 0; p < spacing; ++p) weights[static_cast<std::size_t>(p)] = lagrange(static_cast<double>(p) / spacing);
     nodes.assign(static_cast<std::size_t>(rows) * depths.size() * static_cast<std::size_t>(columns), Node{});
 }
 
+namespace {
+
+/// Largest |X| and |S| of a line of nodes.
+EIKONAL_CLONES void largest_of(const Node* nodes, int n, float* x, float* s) {
+    Node most{};
+    for (int i = 0; i < n; ++i) {
+        const Node v = nodes[i], magnitude = v < 0 ? -v : v;
+        most = magnitude > most ? magnitude : most;
+    }
+    *x = std::max(most[0], most[1]);
+    *s = std::max(most[2], most[3]);
+}
+
+}  // namespace
+
 float Band::largest_shift() const {
     float largest = 0;
     for (int r = 0; r < rows; ++r)
         for (std::size_t k = 0; k < depths.size(); ++k) {
-            const auto scale = static_cast<float>(perspective ? 1 / depths[k] : 1.0);
-            for (int c = 0; c < columns; ++c) {
-                const Node n = nodes[index(r, k, c)];
-                largest = std::max({largest, std::abs(n[0]) * scale, std::abs(n[1]) * scale});
-            }
+            float x, s;
+            largest_of(nodes.data() + index(r, k), columns, &x, &s);
+            largest = std::max(largest, x * static_cast<float>(perspective ? 1 / depths[k] : 1.0));
+            if (perspective && k + 1 == depths.size()) largest = std::max(largest, s);
         }
     return largest;
 }
@@ -107,40 +115,46 @@ void BandRow::start(const Band& band, int y) {
     band_ = &band;
     const int base = floor_div(y, band.spacing);
     const int phase = y - base * band.spacing;
-    const int grid_row = base - kBefore - band.row0;
+    const int grid_row = base - band.before() - band.row0;
     const std::size_t line = band.depths.size() * static_cast<std::size_t>(band.columns);
     if (phase == 0) {
-        source_ = band.nodes.data() + band.index(grid_row + kBefore, 0);
+        source_ = band.nodes.data() + band.index(base - band.row0, 0);
     } else {
         line_.resize(line);
         weighted_lines(band.nodes.data() + band.index(grid_row, 0), line, line,
                        band.weights[static_cast<std::size_t>(phase)], line_.data());
         source_ = line_.data();
     }
+    recent_[0] = recent_[1] = mix_at(band, band.depths[0]);
     cached_.resize(band.depths.size());
     cached_x_.assign(band.depths.size(), std::numeric_limits<int>::min());
 }
 
+const Mix& BandRow::mix(double z) {
+    if (recent_[0].z != z) {
+        if (recent_[1].z != z) recent_[1] = mix_at(*band_, z);
+        std::swap(recent_[0], recent_[1]);
+    }
+    return recent_[0];
+}
+
 Node BandRow::node(std::size_t depth, int x) {
+    const Node* line = source_ + depth * static_cast<std::size_t>(band_->columns) - band_->column0;
+    if (band_->spacing == 1) return line[x];
     if (cached_x_[depth] == x) return cached_[depth];
     const int base = floor_div(x, band_->spacing);
     const int phase = x - base * band_->spacing;
-    const Node* p = source_ + depth * static_cast<std::size_t>(band_->columns) + (base - kBefore - band_->column0);
-    Node v;
-    if (phase == 0) {
-        v = p[kBefore];
-    } else {
-        const Weights& w = band_->weights[static_cast<std::size_t>(phase)];
-        v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] + splat(w[4]) * p[4] +
-            splat(w[5]) * p[5];
-    }
+    const Node* p = line + base - kBefore;
+    const Weights& w = band_->weights[static_cast<std::size_t>(phase)];
+    const Node v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] + splat(w[4]) * p[4] +
+                   splat(w[5]) * p[5];
     cached_[depth] = v;
     cached_x_[depth] = x;
     return v;
 }
 
 Shift BandRow::at(int x, double z) {
-    const Mix m = mix_at(*band_, z);
+    const Mix& m = mix(z);
     const Node a = node(m.lower, x);
     Shift d{m.x_lower * a[0] + m.s_lower * a[2], m.x_lower * a[1] + m.s_lower * a[3]};
     if (m.upper != m.lower) {
@@ -158,6 +172,15 @@ EIKONAL_CLONES void mix_line(const Node* lower, const Node* upper, const Mix& m,
     for (int i = 0; i < n; ++i) {
         const Node v = wl * lower[i] + wu * upper[i];
         out[i] = Node{v[0] + v[2], v[1] + v[3], 0, 0};
+    }
+}
+
+EIKONAL_CLONES void add_mixed(const Node* lower, const Node* upper, const Mix& m, int n, float* uv) {
+    const Node wl{m.x_lower, m.x_lower, m.s_lower, m.s_lower}, wu{m.x_upper, m.x_upper, m.s_upper, m.s_upper};
+    for (int i = 0; i < n; ++i) {
+        const Node v = wl * lower[i] + wu * upper[i];
+        uv[2 * i] += v[0] + v[2];
+        uv[2 * i + 1] += v[1] + v[3];
     }
 }
 
@@ -184,19 +207,15 @@ void BandRow::add_constant_depth(int x0, int n, double z, float* uv) const {
     const Band& band = *band_;
     const Mix m = mix_at(band, z);
     const auto columns = static_cast<std::size_t>(band.columns);
-    std::vector<Node> line(columns);
-    mix_line(source_ + m.lower * columns, source_ + m.upper * columns, m, band.columns, line.data());
-    const int base = floor_div(x0, band.spacing);
+    const Node *lower = source_ + m.lower * columns, *upper = source_ + m.upper * columns;
+    const int base = floor_div(x0, band.spacing), first = base - band.before() - band.column0;
     if (band.spacing == 1) {
-        const Node* p = line.data() + (base - band.column0);
-        for (int i = 0; i < n; ++i) {
-            uv[2 * i] += p[i][0];
-            uv[2 * i + 1] += p[i][1];
-        }
+        add_mixed(lower + first, upper + first, m, n, uv);
         return;
     }
-    expand_line(line.data() + (base - kBefore - band.column0), x0 - base * band.spacing, band.spacing,
-                band.weights.data(), n, uv);
+    std::vector<Node> line(columns);
+    mix_line(lower, upper, m, band.columns, line.data());
+    expand_line(line.data() + first, x0 - base * band.spacing, band.spacing, band.weights.data(), n, uv);
 }
 
 }  // namespace eikonal

@@ -7,11 +7,12 @@
 /// so that the displacement of an object at axial depth z is d = X(z)/z (perspective) or d = X(z) (orthographic, where
 /// f_px is pixels per metre and X in px). In image axes: x right, y down.
 ///
-/// Between depths X is the cubic Hermite interpolant of (X, S), or linear where the model says so (screens: exactly
-/// piecewise linear; tables: the paper's suggestion). Between grid nodes it is a six-point Lagrange interpolant, exact
-/// for fifth-order polynomials; at a spacing of 1 there is nothing to interpolate.
+/// Between depths X is the cubic Hermite interpolant of (X, S), exact for screens, or linear where the model says so
+/// (tables: the paper's suggestion). Between grid nodes it is a six-point Lagrange interpolant, exact for fifth-order
+/// polynomials; at a spacing of 1 there is nothing to interpolate.
 ///
-/// Beyond the last depth X continues along its last slope; before the first it is interpolated from X(0) = 0.
+/// Beyond the last depth X continues along its last slope; before the first it is interpolated from X(0) = 0. Finite
+/// for every z > 0 that a float can hold, as long as the nodes are.
 #pragma once
 
 #include <array>
@@ -23,10 +24,13 @@ namespace eikonal {
 
 enum class DepthInterpolation { Linear, Hermite };
 
-/// Widest spacing of nodes in pixels, and the largest part of a field's cell that they may span. At 0.6 cells the
-/// interpolant errs by about 0.2 % rms of a field that its own lattice resolves with four cells to an inner scale.
+/// Widest spacing of nodes in pixels, and the largest part of a field's cell that they may span.
 inline constexpr int kWidestSpacing = 8;
-inline constexpr double kCellsPerNode = 0.6;
+inline constexpr double kCellsPerNode = 0.55;
+/// Rms error of interpolation between nodes that leaves, relative to the rms of the map: 0.6 % for screens that resolve
+/// l0 with three cells, and most where a pixel limits them, whose field is not smooth at its own cell.
+/// (tests/displacement_test.cpp)
+inline constexpr double kSpacingError = 0.011;
 /// Largest power of two that keeps to both, for a field whose finest cell is `cell_px` pixels wide on the screen.
 int node_spacing(double cell_px);
 
@@ -49,8 +53,10 @@ struct Band {
     std::vector<Node> nodes;
     std::vector<std::array<float, 6>> weights;  ///< of the interpolant, for each phase 0 … spacing - 1
 
-    /// Sets the grid that interpolation needs for `rows` (absolute pixel window), and allocates. depths must be set.
+    /// Sets the grid that interpolation needs for these (absolute) pixels, and zeroes the nodes. depths must be set.
     void cover(const PixelWindow& pixels);
+    /// Nodes that interpolation takes before the one at or before a pixel.
+    int before() const { return spacing > 1 ? 2 : 0; }
     std::size_t index(int grid_row, std::size_t depth, int column = 0) const {
         return (static_cast<std::size_t>(grid_row) * depths.size() + depth) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(column);
@@ -58,7 +64,7 @@ struct Band {
     Node* row(int grid_row, std::size_t depth) { return nodes.data() + index(grid_row, depth); }
     /// Multiplies the displacement.
     void scale(float gain);
-    /// Upper bound of |d| over the band's nodes, in pixels (per component; interpolation overshoots by < 1.6 times).
+    /// Largest component of d over the band's nodes and layers, and in the limit far beyond them [px].
     float largest_shift() const;
 };
 
@@ -73,10 +79,19 @@ class BandRow {
     /// The same for every column of [x0, x0 + n) at one depth, added into interleaved (u, v). The fast path.
     void add_constant_depth(int x0, int n, double z, float* uv) const;
 
+    /// The two layers around a depth z, and the weights of their (X, S) in d.
+    struct Mix {
+        double z;
+        std::size_t lower, upper;
+        float x_lower, s_lower, x_upper, s_upper;
+    };
+
   private:
+    const Mix& mix(double z);
     Node node(std::size_t depth, int x);
 
     const Band* band_ = nullptr;
+    std::array<Mix, 2> recent_;  ///< depths repeat along a row
     std::vector<Node> line_;  ///< the row interpolated vertically: [depth][column]
     const Node* source_ = nullptr;
     std::vector<Node> cached_;

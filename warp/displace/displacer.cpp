@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
+#include "noise/dispatch.h"
 #include "noise/error.h"
 #include "noise/random.h"
 #include "noise/screen_layout.h"
@@ -18,9 +20,17 @@
 namespace eikonal {
 namespace {
 
-constexpr int kBandRows = 64;
-/// Between nodes the interpolant may exceed them by this factor.
+/// Pixels of a tile, anchored at (0, 0): a pixel's bits depend on its tile, which is worked out whole, and not on the
+/// window asked for. Bounds the memory of a thread, too.
+constexpr int kTileWidth = 512, kTileHeight = 64;
+/// Displacements beyond this [px] are cut to it, so that extreme scenes leave finite maps.
+constexpr float kLargestShift = 1e6f;
+/// Between nodes and layers the interpolant may exceed them by this factor.
 constexpr double kOvershoot = 1.6;
+/// Least depth that layers are made for [m]: nearer ones move as at this one.
+constexpr double kLeastDepth = 1e-6;
+/// Spline error of `table` and `tables`, relative to the rms, and the nearest object, in parts of `far`, that padding is for.
+constexpr double kTableSplineError = 1e-2, kNearestPadded = 0.05;
 /// A lattice axis is the view's if they differ by less (1 - cosine).
 constexpr double kAligned = 1e-9;
 /// table and tables take rays for parallel to a lattice axis: refused beyond 30 degrees from it.
@@ -37,12 +47,6 @@ const char* name_of(Model model) {
     return "";
 }
 
-/// Half the physical memory: what a field may take.
-std::uint64_t memory_limit() {
-    const auto pages = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES));
-    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE)) / 2;
-}
-
 /// One medium with the field that its form calls for and the model that reads it.
 struct Layer {
     std::size_t medium = 0;
@@ -50,11 +54,20 @@ struct Layer {
     std::variant<ScreenField, LatticeField, GradientNoiseField> field;
     double step = 0;      ///< [m] of ray, first-order
     double constant = 0;  ///< c of `table`
+    int padding = 1;      ///< of the tables' splines
 };
 
 using LayerInstant = std::variant<ScreensInstant, TablesInstant, FirstOrderInstant>;
 
 }  // namespace
+
+std::uint64_t memory_limit() {
+    auto bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+    // a container may have less than the machine
+    std::ifstream file("/sys/fs/cgroup/memory.max");
+    if (std::uint64_t own = 0; file >> own) bytes = std::min(bytes, own);
+    return bytes / 2;
+}
 
 struct Displacer::Shot {
     Scene scene;
@@ -148,6 +161,11 @@ struct Displacer::Shot {
                                            i, settings.far, geometry.period[static_cast<std::size_t>(rays.axis)]));
         Layer layer{i, model, LatticeField(spec, geometry), 0, 0};
         layer.step = std::min({geometry.spacing(0), geometry.spacing(1), geometry.spacing(2)});
+        if (model != Model::FirstOrder) {
+            const std::array paths{kNearestPadded * settings.far, settings.far};
+            layer.padding = path_padding(std::get<LatticeField>(layer.field), rays, paths,
+                                         model == Model::Spectral ? kPathTableError : kTableSplineError);
+        }
         if (model == Model::Table) {
             const auto& field = std::get<LatticeField>(layer.field);
             const auto x1 = field.displacement_variance(rays.axis, settings.far, rays.aperture);
@@ -192,14 +210,14 @@ struct Displacer::Shot {
         const auto& field = std::get<LatticeField>(layer.field);
         const PathRays rays = nearest_axis(camera, aperture);
         switch (layer.model) {
-            case Model::Table: return slice_instant(field, t, rays, settings.far, layer.constant, strength);
+            case Model::Table: return slice_instant(field, t, rays, settings.far, layer.constant, strength, layer.padding);
             case Model::Tables: {
                 std::vector<double> depths;
                 for (int k = 1; k <= kTables; ++k) depths.push_back(settings.far * k / kTables);
-                return exact_instant(field, t, rays, depths, DepthInterpolation::Linear, strength);
+                return exact_instant(field, t, rays, depths, DepthInterpolation::Linear, strength, layer.padding);
             }
             case Model::Spectral:
-                return exact_instant(field, t, rays, spectral_depths(field, rays, nearest, farthest), DepthInterpolation::Hermite, strength);
+                return exact_instant(field, t, rays, spectral_depths(field, rays, nearest, farthest), DepthInterpolation::Hermite, strength, layer.padding);
             default: return FirstOrderInstant{LatticeSnapshot(field, t), strength, layer.step, aperture, settings.far};
         }
     }
@@ -251,32 +269,60 @@ Displacer::Instant::Instant(Instant&&) noexcept = default;
 Displacer::Instant::~Instant() = default;
 const Camera& Displacer::Instant::camera() const { return state_->camera; }
 
+namespace {
+
+int tile_of(int pixel, int size) { return pixel >= 0 ? pixel / size : -((-pixel + size - 1) / size); }
+
+PixelWindow intersection(const PixelWindow& a, const PixelWindow& b) {
+    const int x0 = std::max(a.x0, b.x0), y0 = std::max(a.y0, b.y0);
+    return {x0, y0, std::min(a.x0 + a.width, b.x0 + b.width) - x0, std::min(a.y0 + a.height, b.y0 + b.height) - y0};
+}
+
+EIKONAL_CLONES void keep_finite(float* v, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) {
+        const float a = v[i] == v[i] ? v[i] : 0.0f;
+        v[i] = a > kLargestShift ? kLargestShift : (a < -kLargestShift ? -kLargestShift : a);
+    }
+}
+
+}  // namespace
+
 void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, double gain, float* uv) const {
     const auto stride = 2 * static_cast<std::size_t>(window.width);
-    const int band_count = (window.height + kBandRows - 1) / kBandRows;
-    tbb::parallel_for(0, band_count, [&](int b) {
-        const int y0 = window.y0 + b * kBandRows;
-        const int rows = std::min(kBandRows, window.y0 + window.height - y0);
-        float* first = uv + static_cast<std::size_t>(y0 - window.y0) * stride;
-        std::fill(first, first + static_cast<std::size_t>(rows) * stride, 0.0f);
-        if (state_->blank.empty()) return;
+    const auto* plane = std::get_if<const DepthPlane*>(&depth);
+    const int first_column = tile_of(window.x0, kTileWidth), first_row = tile_of(window.y0, kTileHeight);
+    const int columns = tile_of(window.x0 + window.width - 1, kTileWidth) - first_column + 1;
+    const int rows = tile_of(window.y0 + window.height - 1, kTileHeight) - first_row + 1;
+    tbb::parallel_for(0, columns * rows, [&](int t) {
+        const PixelWindow tile{(first_column + t % columns) * kTileWidth, (first_row + t / columns) * kTileHeight, kTileWidth, kTileHeight};
+        const PixelWindow part = intersection(tile, window);
+        // Nodes on lines depend on where the line begins, and the march's reach on the whole tile; rays do not.
         std::vector<Band> bands = state_->blank;
         double largest = 0;
         for (std::size_t i = 0; i < bands.size(); ++i) {
-            bands[i].cover({window.x0, y0, window.width, rows});
-            std::visit([&](const auto& layer) { layer.fill(bands[i], state_->camera); }, state_->layers[state_->owner[i]]);
+            const LayerInstant& layer = state_->layers[state_->owner[i]];
+            const bool whole = plane != nullptr && meeting == DepthMeeting::March;
+            const PixelWindow& wanted = whole ? tile : PixelWindow{tile.x0, part.y0, tile.width, part.height};
+            bands[i].cover(std::holds_alternative<FirstOrderInstant>(layer) && !whole ? part : wanted);
+            std::visit([&](const auto& l) { l.fill(bands[i], state_->camera); }, layer);
             bands[i].scale(static_cast<float>(gain));
-            largest += bands[i].largest_shift();
+            if (whole) largest += bands[i].largest_shift();
         }
         const int reach = static_cast<int>(std::min(std::ceil(kOvershoot * largest) + 1, 1e6));
+        std::optional<MeetTile> meet;
+        if (plane) meet.emplace(**plane, part, meeting, reach);
         BandRows row;
-        for (int r = 0; r < rows; ++r) {
-            float* out = first + static_cast<std::size_t>(r) * stride;
-            row.start(bands, y0 + r);
-            if (const auto* plane = std::get_if<const DepthPlane*>(&depth))
-                meet_row(row, window.x0, window.width, y0 + r, **plane, meeting, reach, out);
-            else
-                row.add_constant_depth(window.x0, window.width, std::get<double>(depth), out);
+        for (int y = part.y0; y < part.y0 + part.height; ++y) {
+            float* out = uv + static_cast<std::size_t>(y - window.y0) * stride + 2 * static_cast<std::size_t>(part.x0 - window.x0);
+            const std::size_t values = 2 * static_cast<std::size_t>(part.width);
+            row.start(bands, y);
+            if (meet) {
+                meet->row(row, y, out);
+            } else {
+                std::fill(out, out + values, 0.0f);
+                row.add_constant_depth(part.x0, part.width, std::get<double>(depth), out);
+            }
+            keep_finite(out, values);
         }
     });
 }
@@ -286,6 +332,8 @@ Displacer::~Displacer() = default;
 Displacer::Displacer(Displacer&&) noexcept = default;
 
 Displacer::Instant Displacer::at(double frame, double nearest, double farthest) const {
+    nearest = std::max(nearest, kLeastDepth);
+    farthest = std::max(nearest, farthest);
     auto state = std::make_unique<Instant::State>();
     state->camera = shot_->path.at(frame);
     const double t = shot_->time(frame);

@@ -13,6 +13,7 @@
 ///     gradient-noise   first-order
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <variant>
@@ -90,5 +91,8 @@ class Displacer {
 };
 
 inline constexpr int kRmsRays = 256;
+
+/// Half the memory of the machine, or of the container [bytes]: what one field, or the frames under way, may take.
+std::uint64_t memory_limit();
 
 }  // namespace eikonal

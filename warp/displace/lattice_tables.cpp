@@ -111,17 +111,17 @@ TablesInstant blank(const LatticeField& field, const PathRays& rays, DepthInterp
 }  // namespace
 
 TablesInstant slice_instant(const LatticeField& field, double t, const PathRays& rays, double far, double constant,
-                            double strength) {
+                            double strength, int padding) {
     TablesInstant instant = blank(field, rays, DepthInterpolation::Linear, strength * constant * far);
-    SliceTable slice = slice_table(field, t, rays, kCentroid * far);
+    SliceTable slice = slice_table(field, t, rays, kCentroid * far, padding);
     instant.layers.push_back({far, std::move(slice.force), std::nullopt, std::move(slice.index), std::nullopt});
     return instant;
 }
 
 TablesInstant exact_instant(const LatticeField& field, double t, const PathRays& rays, const std::vector<double>& depths,
-                            DepthInterpolation interpolation, double strength) {
+                            DepthInterpolation interpolation, double strength, int padding) {
     TablesInstant instant = blank(field, rays, interpolation, strength);
-    for (PathTable& table : path_tables(field, t, rays, depths)) {
+    for (PathTable& table : path_tables(field, t, rays, depths, padding)) {
         TablesInstant::Layer layer{table.u, std::move(table.displacement), std::nullopt, std::move(table.potential),
                                    std::move(table.potential_slope)};
         if (interpolation == DepthInterpolation::Hermite) layer.slope = std::move(table.slope);

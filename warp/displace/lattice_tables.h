@@ -46,12 +46,12 @@ PathRays nearest_axis(const Camera& camera, double aperture);
 /// Cosine between the view and that axis.
 double axis_alignment(const Camera& camera, const PathRays& rays);
 
-/// table: `constant` is c, so that x1 = c u F.
+/// table: `constant` is c, so that x1 = c u F. padding: that of path_padding, found once a shot.
 TablesInstant slice_instant(const LatticeField& field, double t, const PathRays& rays, double far, double constant,
-                            double strength);
+                            double strength, int padding);
 /// tables and spectral: exact tables at `depths`.
 TablesInstant exact_instant(const LatticeField& field, double t, const PathRays& rays, const std::vector<double>& depths,
-                            DepthInterpolation interpolation, double strength);
+                            DepthInterpolation interpolation, double strength, int padding);
 
 /// Depths of `spectral` for objects between nearest and farthest: evenly spaced, a lattice cell apart where that takes no
 /// more than kMostSpectralDepths; one where they are equal.

@@ -6,76 +6,107 @@
 namespace eikonal {
 namespace {
 
-constexpr int kBlock = 8;
-constexpr int kBisections = 10;
-/// Steps of the march per pixel of screen path, and the most of them: a path of a hundred pixels is beyond any warp.
-constexpr float kStepsPerPixel = 2;
-constexpr int kMostSteps = 256;
+using Range = DepthPlane::Range;
 
-int round_to_pixel(float v) { return static_cast<int>(std::floor(v + 0.5f)); }
+int floor_block(int a) { return a >= 0 ? a / DepthPlane::kBlock : -((-a + DepthPlane::kBlock - 1) / DepthPlane::kBlock); }
 
-/// Whether a ray at depth z, seen at pixel (x, y) + d, has met the buffer or is about to pass over a nearer edge.
-bool blocked(const DepthPlane& depth, int x, int y, Shift d, double z) {
-    const auto zf = static_cast<float>(z);
-    if (depth.at(x + round_to_pixel(d.x), y + round_to_pixel(d.y)) <= zf) return true;
-    const float fx = std::floor(d.x), fy = std::floor(d.y);
-    const int xi = x + static_cast<int>(fx), yi = y + static_cast<int>(fy);
-    const int nx = d.x > fx ? 1 : 0, ny = d.y > fy ? 1 : 0;
-    for (int j = 0; j <= ny; ++j)
-        for (int i = 0; i <= nx; ++i)
-            if (depth.at(xi + i, yi + j) < kEdgeRatio * zf) return true;
-    return false;
+/// Whole pixels, far within an int for any displacement.
+int whole(float v) {
+    constexpr float kMost = 1e6f;
+    return static_cast<int>(std::floor(v > -kMost ? (v < kMost ? v : kMost) : -kMost));
 }
 
-Shift march(BandRows& row, int x, int y, const DepthPlane& depth, int reach) {
-    const DepthPlane::Range range = depth.around(x, y, reach);
-    Shift near_d = row.at(x, range.nearest);
-    if (range.nearest == range.farthest) return near_d;
-    const Shift far_d = row.at(x, range.farthest);
-    const float span = std::max(std::abs(far_d.x - near_d.x), std::abs(far_d.y - near_d.y));
-    if (span < kAlike) return row.at(x, depth.at(x + round_to_pixel(far_d.x), y + round_to_pixel(far_d.y)));
-    if (depth.at(x + round_to_pixel(near_d.x), y + round_to_pixel(near_d.y)) <= range.nearest) return near_d;
+/// One pixel's bent ray and the depth buffer.
+struct Ray {
+    BandRows& bands;
+    const DepthPlane& depth;
+    int x, y;
 
-    // Even steps in inverse depth: the displacement of an object changes most where it is near.
-    const int steps = std::clamp(static_cast<int>(std::ceil(kStepsPerPixel * span)) + 3, 4, kMostSteps);
-    const double inverse_near = 1.0 / range.nearest, inverse_far = 1.0 / range.farthest;
-    double before = range.nearest;
-    for (int i = 1; i <= steps; ++i) {
-        const double z = i == steps ? range.farthest
-                                    : 1 / (inverse_near + (inverse_far - inverse_near) * i / static_cast<double>(steps));
-        const Shift d = row.at(x, z);
-        if (!blocked(depth, x, y, d, z)) {
-            before = z;
-            near_d = d;
-            continue;
-        }
-        double behind = z;
-        for (int b = 0; b < kBisections; ++b) {
-            const double middle = 0.5 * (before + behind);
-            const Shift m = row.at(x, middle);
-            if (blocked(depth, x, y, m, middle)) {
-                behind = middle;
-            } else {
-                before = middle;
-                near_d = m;
-            }
-        }
-        return near_d;
+    Shift at(double z) const { return bands.at(x, z); }
+    /// The depth buffer where a displacement points to.
+    float buffer(Shift d) const { return depth.at(x + whole(d.x + 0.5f), y + whole(d.y + 0.5f)); }
+
+    /// Whether the picture's samples around pixel + d mix the facet there, at depth `facet`, with one much nearer.
+    bool at_edge(Shift d, float facet) const {
+        const float limit = kEdgeRatio * facet;
+        if (limit <= depth.nearest()) return false;
+        const int xi = whole(d.x), yi = whole(d.y);
+        const int nx = d.x != static_cast<float>(xi) ? 1 : 0, ny = d.y != static_cast<float>(yi) ? 1 : 0;
+        for (int j = 0; j <= ny; ++j)
+            for (int i = 0; i <= nx; ++i)
+                if (depth.at(x + xi + i, y + yi + j) < limit) return true;
+        return false;
     }
-    return near_d;
+    bool blocked(Shift d, double z) const {
+        const float facet = buffer(d);
+        return facet <= static_cast<float>(z) || at_edge(d, facet);
+    }
+};
+
+bool same_pixel(Shift a, Shift b) {
+    return whole(a.x + 0.5f) == whole(b.x + 0.5f) && whole(a.y + 0.5f) == whole(b.y + 0.5f);
 }
 
-Shift fixed_point(BandRows& row, int x, int y, const DepthPlane& depth) {
-    float z = depth.at(x, y);
-    Shift d = row.at(x, z);
-    for (int i = 0; i < kFixedPointSteps; ++i) {
-        const float next = depth.at(x + round_to_pixel(d.x), y + round_to_pixel(d.y));
-        if (next == z) break;
-        z = next;
-        d = row.at(x, z);
+/// Largest component of a - b.
+float motion(Shift a, Shift b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); }
+
+/// The last clear point between clear (z, d) and blocked (behind, e).
+Shift bisect(const Ray& ray, double z, Shift d, double behind, Shift e) {
+    for (int i = 0; i < 32 && motion(d, e) > kMarchError; ++i) {
+        const double middle = 0.5 * (z + behind);
+        const Shift m = ray.at(middle);
+        if (ray.blocked(m, middle)) {
+            behind = middle;
+            e = m;
+        } else {
+            z = middle;
+            d = m;
+        }
     }
     return d;
 }
+
+Shift march(const Ray& ray, const Range& range) {
+    double z = range.nearest;
+    Shift d = ray.at(z);
+    if (range.nearest == range.farthest) return d;
+    for (int step = 0; step < kMostMarchSteps; ++step) {
+        const float under = ray.buffer(d);
+        const double facet = std::min(under, range.farthest);
+        if (facet <= z || ray.at_edge(d, under)) return d;
+        const Shift upon = ray.at(facet);
+        if (same_pixel(upon, d) && !ray.at_edge(upon, under)) return upon;
+        double next = facet;
+        Shift e = upon;
+        if (const double way = motion(upon, d); way > kMarchStep) {
+            // even in inverse depth: the displacement of an object changes most where it is near
+            next = 1 / (1 / z + (1 / facet - 1 / z) * (kMarchStep / way));
+            e = ray.at(next);
+        }
+        if (ray.blocked(e, next)) {
+            // a facet met exactly at its own depth, or something that the ray ran into on its way there
+            const float there = ray.buffer(e);
+            return there == static_cast<float>(next) && !ray.at_edge(e, there) ? e : bisect(ray, z, d, next, e);
+        }
+        z = next;
+        d = e;
+    }
+    return d;
+}
+
+Shift fixed_point(const Ray& ray) {
+    float z = ray.depth.at(ray.x, ray.y);
+    Shift d = ray.at(z);
+    for (int i = 0; i < kFixedPointSteps; ++i) {
+        const float next = ray.buffer(d);
+        if (next == z) break;
+        z = next;
+        d = ray.at(z);
+    }
+    return d;
+}
+
+Range unite(const Range& a, const Range& b) { return {std::min(a.nearest, b.nearest), std::max(a.farthest, b.farthest)}; }
 
 }  // namespace
 
@@ -83,18 +114,13 @@ DepthPlane::DepthPlane(const PixelWindow& window, std::vector<float> metres) : w
     block_columns_ = (window.width + kBlock - 1) / kBlock;
     block_rows_ = (window.height + kBlock - 1) / kBlock;
     const auto [low, high] = std::minmax_element(metres_.begin(), metres_.end());
-    nearest_ = *low;
-    farthest_ = *high;
-    blocks_.assign(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_), {farthest_, nearest_});
-    for (int y = 0; y < window.height; ++y)
-        for (int x = 0; x < window.width; ++x) {
-            Range& block = blocks_[static_cast<std::size_t>(y / kBlock) * static_cast<std::size_t>(block_columns_) +
-                                   static_cast<std::size_t>(x / kBlock)];
-            const float z = metres_[static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width) +
-                                    static_cast<std::size_t>(x)];
-            block.nearest = std::min(block.nearest, z);
-            block.farthest = std::max(block.farthest, z);
-        }
+    all_ = {*low, *high};
+    blocks_.assign(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_), {all_.farthest, all_.nearest});
+    const float* z = metres_.data();
+    for (int y = 0; y < window.height; ++y) {
+        Range* row = blocks_.data() + static_cast<std::size_t>(y / kBlock) * static_cast<std::size_t>(block_columns_);
+        for (int x = 0; x < window.width; ++x, ++z) row[x / kBlock] = unite(row[x / kBlock], {*z, *z});
+    }
 }
 
 float DepthPlane::at(int x, int y) const {
@@ -103,32 +129,55 @@ float DepthPlane::at(int x, int y) const {
     return metres_[static_cast<std::size_t>(cy) * static_cast<std::size_t>(window_.width) + static_cast<std::size_t>(cx)];
 }
 
-DepthPlane::Range DepthPlane::around(int x, int y, int reach) const {
-    const int cx = x - window_.x0, cy = y - window_.y0;
-    const auto block = [](int c, int count) { return std::clamp((c >= 0 ? c : c - kBlock + 1) / kBlock, 0, count - 1); };
-    const int x0 = block(cx - reach, block_columns_), x1 = block(cx + reach, block_columns_);
-    const int y0 = block(cy - reach, block_rows_), y1 = block(cy + reach, block_rows_);
-    Range range = blocks_[static_cast<std::size_t>(y0) * static_cast<std::size_t>(block_columns_) + static_cast<std::size_t>(x0)];
-    for (int j = y0; j <= y1; ++j)
-        for (int i = x0; i <= x1; ++i) {
-            const Range& b = blocks_[static_cast<std::size_t>(j) * static_cast<std::size_t>(block_columns_) + static_cast<std::size_t>(i)];
-            range.nearest = std::min(range.nearest, b.nearest);
-            range.farthest = std::max(range.farthest, b.farthest);
+std::vector<Range> DepthPlane::around(const PixelWindow& tile, int reach) const {
+    const auto column = [&](int b) { return static_cast<std::size_t>(std::clamp(b, 0, block_columns_ - 1)); };
+    const auto row = [&](int b) { return static_cast<std::size_t>(std::clamp(b, 0, block_rows_ - 1)); };
+    const int x0 = floor_block(tile.x0 - window_.x0), x1 = floor_block(tile.x0 + tile.width - 1 - window_.x0);
+    const int y0 = floor_block(tile.y0 - window_.y0), y1 = floor_block(tile.y0 + tile.height - 1 - window_.y0);
+    // a block's pixels reach so many blocks on
+    const int blocks = std::min((reach + kBlock - 1) / kBlock, std::max(block_columns_, block_rows_));
+    const auto columns = static_cast<std::size_t>(x1 - x0 + 1);
+    const auto stride = static_cast<std::size_t>(block_columns_);
+    // along the rows, then along the columns
+    std::vector<Range> lines, result;
+    for (int by = y0 - blocks; by <= y1 + blocks; ++by)
+        for (int bx = x0; bx <= x1; ++bx) {
+            Range r = blocks_[row(by) * stride + column(bx)];
+            for (int i = bx - blocks; i <= bx + blocks; ++i) r = unite(r, blocks_[row(by) * stride + column(i)]);
+            lines.push_back(r);
         }
-    return range;
+    for (int by = y0; by <= y1; ++by)
+        for (std::size_t bx = 0; bx < columns; ++bx) {
+            Range r = lines[static_cast<std::size_t>(by - y0) * columns + bx];
+            for (int j = 1; j <= 2 * blocks; ++j) r = unite(r, lines[static_cast<std::size_t>(by - y0 + j) * columns + bx]);
+            result.push_back(r);
+        }
+    return result;
 }
 
-void meet_row(BandRows& row, int x0, int n, int y, const DepthPlane& depth, DepthMeeting how, int reach, float* uv) {
-    for (int i = 0; i < n; ++i) {
-        const int x = x0 + i;
+MeetTile::MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeeting how, int reach)
+    : depth_(depth), tile_(tile), how_(how) {
+    if (how != DepthMeeting::March) return;
+    ranges_ = depth.around(tile, reach);
+    range_columns_ = floor_block(tile.x0 + tile.width - 1 - depth.window().x0) - floor_block(tile.x0 - depth.window().x0) + 1;
+}
+
+void MeetTile::row(BandRows& bands, int y, float* uv) const {
+    const PixelWindow& window = depth_.window();
+    const int first_column = floor_block(tile_.x0 - window.x0);
+    const auto first = static_cast<std::size_t>((floor_block(y - window.y0) - floor_block(tile_.y0 - window.y0)) * range_columns_);
+    for (int i = 0; i < tile_.width; ++i) {
+        const Ray ray{bands, depth_, tile_.x0 + i, y};
         Shift d;
-        switch (how) {
-            case DepthMeeting::March: d = march(row, x, y, depth, reach); break;
-            case DepthMeeting::FixedPoint: d = fixed_point(row, x, y, depth); break;
-            case DepthMeeting::Own: d = row.at(x, depth.at(x, y)); break;
+        switch (how_) {
+            case DepthMeeting::March:
+                d = march(ray, ranges_[first + static_cast<std::size_t>(floor_block(ray.x - window.x0) - first_column)]);
+                break;
+            case DepthMeeting::FixedPoint: d = fixed_point(ray); break;
+            case DepthMeeting::Own: d = ray.at(depth_.at(ray.x, y)); break;
         }
-        uv[2 * i] += d.x;
-        uv[2 * i + 1] += d.y;
+        uv[2 * i] = d.x;
+        uv[2 * i + 1] = d.y;
     }
 }
 

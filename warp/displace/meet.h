@@ -1,4 +1,4 @@
-/// Where a bent ray meets the depth buffer (PHYSICS 7), one row at a time.
+/// Where a bent ray meets the depth buffer (PHYSICS 7), one tile of pixels at a time.
 ///
 /// Three ways, dearest first:
 ///  - March: follow the screen path s(z) = pixel + d(z) from near to far until the depth buffer there is nearer than z.
@@ -8,6 +8,9 @@
 ///  - Own: D = the pixel's own depth.
 ///
 /// Depth is read at the pixel nearest to s, never filtered: a depth between foreground and background exists nowhere.
+/// Seen so, every pixel is a facet at its own depth. The march goes from facet to facet: in one leap to the depth of the
+/// one under the ray if the path stays upon it, else no farther than kMarchStep pixels; a point where it is blocked
+/// between is bisected to kMarchError.
 #pragma once
 
 #include <vector>
@@ -19,38 +22,56 @@ namespace eikonal {
 enum class DepthMeeting { March, FixedPoint, Own };
 
 inline constexpr int kFixedPointSteps = 8;
-/// Once all depths around a pixel displace it alike within this many pixels, they are not told apart.
-inline constexpr float kAlike = 1.0f / 512;
-/// A neighbour nearer than this part of the ray's depth is an edge to stay clear of, not a slope.
+/// [px]
+inline constexpr float kMarchStep = 0.5f, kMarchError = 0.001f;
+/// A path that needs more steps than this, beyond any plausible warp, ends where they do.
+inline constexpr int kMostMarchSteps = 1024;
+/// A neighbour nearer than this part of the depth under the ray is an edge to stay clear of, not a slope.
 inline constexpr float kEdgeRatio = 0.5f;
 
 /// Axial depth of every pixel of a window, in metres, positive and finite; with block extrema for the march.
 class DepthPlane {
   public:
-    /// metres: window.area() values.
+    /// Extrema of depth.
+    struct Range {
+        float nearest, farthest;
+    };
+    static constexpr int kBlock = 8;
+
+    /// metres: window.area() > 0 values.
     DepthPlane(const PixelWindow& window, std::vector<float> metres);
 
     const PixelWindow& window() const { return window_; }
     /// Nearest pixel's depth; outside the window its nearest edge pixel's.
     float at(int x, int y) const;
-    float nearest() const { return nearest_; }
-    float farthest() const { return farthest_; }
-    struct Range {
-        float nearest, farthest;
-    };
-    /// Extrema over at least the pixels within `reach` of (x, y), in steps of blocks.
-    Range around(int x, int y, int reach) const;
+    float nearest() const { return all_.nearest; }
+    float farthest() const { return all_.farthest; }
+    /// Extrema around each block of kBlock² pixels, counted from the window's origin, that holds a pixel of `tile`: over
+    /// at least the pixels within `reach` of any in the block. Row-major.
+    std::vector<Range> around(const PixelWindow& tile, int reach) const;
 
   private:
     PixelWindow window_;
     std::vector<float> metres_;
     std::vector<Range> blocks_;
     int block_columns_ = 0, block_rows_ = 0;
-    float nearest_ = 0, farthest_ = 0;
+    Range all_{};
 };
 
-/// Displacement of the pixels x0 … x0 + n - 1 of row y into interleaved (u, v). `reach`: bound of |d| in pixels for
-/// these rows (rounded up), from Band::largest_shift.
-void meet_row(BandRows& row, int x0, int n, int y, const DepthPlane& depth, DepthMeeting how, int reach, float* uv);
+/// The meeting of one tile's rays.
+class MeetTile {
+  public:
+    /// tile: within depth.window(); reach: bound of |d| in pixels upon it. depth must outlive this.
+    MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeeting how, int reach);
+    /// Sets the displacement of the tile's row y, tile.width interleaved (u, v).
+    void row(BandRows& bands, int y, float* uv) const;
+
+  private:
+    const DepthPlane& depth_;
+    PixelWindow tile_;
+    DepthMeeting how_;
+    std::vector<DepthPlane::Range> ranges_;  ///< March only
+    int range_columns_ = 0;
+};
 
 }  // namespace eikonal

@@ -1,141 +1,198 @@
 #include "warp/displace/thin_screens.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "noise/dispatch.h"
 #include "noise/error.h"
 #include "noise/lattice_snapshot.h"
 
 namespace eikonal {
 namespace {
 
-
-/// Where a screen acts, seen from a camera: depth along the reference axis ahead of the camera, and the root of the part
-/// of the slab that lies ahead.
+/// The part of a slab ahead of a camera: depths along the reference axis, and the root of that part, which scales its
+/// bend.
 struct Place {
-    double depth = 0, weight = 0;
+    double near = 0, far = 0, weight = 0;
+    double middle() const { return 0.5 * (near + far); }
 };
 
-Place place_of(const ScreenSnapshot& screen, double camera_offset) {
-    const double front = screen.w() + 0.5 * screen.thickness() - camera_offset;
-    if (front <= 0) return {};
-    const double back = std::max(0.0, front - screen.thickness());
-    return {0.5 * (front + back), std::sqrt((front - back) / screen.thickness())};
+Place place_of(const ScreenSnapshot& screen, double advance) {
+    const double far = screen.w() + 0.5 * screen.thickness() - advance;
+    const double near = std::max(0.0, far - screen.thickness());
+    if (far <= near) return {};
+    return {near, far, std::sqrt((far - near) / screen.thickness())};
 }
 
-double camera_offset(const ScreensInstant& model, const Camera& camera) {
+/// How far the camera has advanced along the reference axis.
+double advance_of(const ScreensInstant& model, const Camera& camera) {
     return glm::dot(camera.position - model.reference.position, model.reference.forward);
-}
-
-int spacing_of(const ScreenSnapshot& screen, const Camera& camera, double depth) {
-    return node_spacing(screen.cell() * camera.f_px / (camera.projection == Projection::Perspective ? depth : 1.0));
-}
-
-/// A screen of the band, ready to be added row by row.
-struct Active {
-    const ScreenSnapshot* screen;
-    Place place;
-};
-
-/// X(z) = Σ (z - z_m) a_m over the screens ahead of z: running sums of a and a z_m, taken layer by layer.
-class Accumulator {
-  public:
-    Accumulator(Band& band, int row) : band_(band), row_(row), sums_(static_cast<std::size_t>(band.columns)) {}
-
-    /// kick: image-space slope f L a of one screen at `column`, acting from depth z.
-    void add(int column, double z, float kick_x, float kick_y) {
-        const auto zf = static_cast<float>(z);
-        sums_[static_cast<std::size_t>(column)] += Node{kick_x * zf, kick_y * zf, kick_x, kick_y};
-    }
-    void store(std::size_t layer) {
-        const auto z = static_cast<float>(band_.depths[layer]);
-        Node* out = band_.row(row_, layer);
-        for (std::size_t c = 0; c < sums_.size(); ++c) {
-            const Node s = sums_[c];
-            out[c] += Node{z * s[2] - s[0], z * s[3] - s[1], s[2], s[3]};
-        }
-    }
-
-  private:
-    Band& band_;
-    int row_;
-    std::vector<Node> sums_;
-};
-
-/// One row of screen samples under parallel axes: a straight, evenly spaced line on the screen.
-void add_aligned(const ScreensInstant& model, const Active& active, const Camera& camera, const Band& band, double py,
-                 std::vector<float>& uv, std::vector<float>& values) {
-    const bool perspective = band.perspective;
-    const double scale = perspective ? active.place.depth : 1.0;
-    const dvec2 first = camera.slope(band.column0 * band.spacing + 0.5, py);
-    const dvec3 moved = camera.position - model.reference.position;
-    const double x0 = glm::dot(moved, model.reference.right) + scale * first.x;
-    const double y0 = glm::dot(moved, model.reference.up) + scale * first.y;
-    const double step = scale * band.spacing / camera.f_px;
-    const auto n = static_cast<std::size_t>(band.columns);
-    const auto weight = static_cast<float>(model.strength * active.place.weight);
-    std::fill(uv.begin(), uv.end(), 0.0f);
-    active.screen->add_gradients(x0, y0, step, 0, band.columns, weight, uv.data());
-    if (!model.falloff) return;
-    std::fill(values.begin(), values.end(), 0.0f);
-    active.screen->add_values(x0, y0, step, 0, band.columns, weight, values.data());
-    const dvec3 base = camera.position + active.place.depth * camera.forward;
-    for (std::size_t i = 0; i < n; ++i) {
-        const dvec3 p = base + scale * ((first.x + static_cast<double>(i) * band.spacing / camera.f_px) * camera.right +
-                                        first.y * camera.up);
-        const IndexSample g = falloff_at(*model.falloff, p);
-        const auto gain = static_cast<float>(g.n);
-        uv[2 * i] = gain * uv[2 * i] + values[i] * static_cast<float>(glm::dot(g.gradient, model.reference.right));
-        uv[2 * i + 1] = gain * uv[2 * i + 1] + values[i] * static_cast<float>(glm::dot(g.gradient, model.reference.up));
-    }
 }
 
 bool same_axes(const Camera& a, const Camera& b) {
     return a.right == b.right && a.up == b.up && a.forward == b.forward;
 }
 
-void fill_aligned_row(const ScreensInstant& model, Band& band, const Camera& camera, const std::vector<Active>& active,
-                      int row) {
-    const double py = (band.row0 + row) * band.spacing + 0.5;
-    const auto n = static_cast<std::size_t>(band.columns);
-    std::vector<float> uv(2 * n), values(model.falloff ? n : 0);
-    std::vector<float> kick_x(n);  // f L of each column
-    const double sy = camera.slope(0.5, py).y;
-    for (std::size_t c = 0; c < n; ++c) {
-        const double sx = camera.slope((band.column0 + static_cast<int>(c)) * band.spacing + 0.5, py).x;
-        kick_x[c] = static_cast<float>(camera.f_px * (band.perspective ? std::sqrt(1 + sx * sx + sy * sy) : 1.0));
+/// A screen of a band.
+struct Active {
+    const ScreenSnapshot* screen;
+    Place place;
+    ScreenSnapshot::Columns columns;  ///< of every row, under parallel axes
+};
+
+/// The screens nearer than `farthest` whose nodes are `spacing` apart, nearest first.
+std::vector<Active> active_screens(const ScreensInstant& model, const Camera& camera, double farthest, int spacing) {
+    const double advance = advance_of(model, camera);
+    std::vector<Active> active;
+    for (const ScreenSnapshot& screen : model.screens) {
+        const Place place = place_of(screen, advance);
+        if (place.weight <= 0 || place.near >= farthest) continue;
+        const double pixels = camera.f_px / (camera.projection == Projection::Perspective ? place.middle() : 1.0);
+        if (node_spacing(screen.cell() * pixels) == spacing) active.push_back({&screen, place, {}});
     }
-    const auto aspect = static_cast<float>(-camera.pixel_aspect);
-    Accumulator sums(band, row);
-    std::size_t next = 0;
-    for (std::size_t layer = 0; layer < band.depths.size(); ++layer) {
-        for (; next < active.size() && active[next].place.depth <= band.depths[layer]; ++next) {
-            add_aligned(model, active[next], camera, band, py, uv, values);
-            for (std::size_t c = 0; c < n; ++c)
-                sums.add(static_cast<int>(c), active[next].place.depth, kick_x[c] * uv[2 * c],
-                         kick_x[c] * aspect * uv[2 * c + 1]);
+    return active;
+}
+
+/// Where a row of nodes lies on a screen under parallel axes: an evenly spaced line; x0 and step hold for every row.
+struct ScreenLine {
+    double x0, y0, step;
+};
+
+ScreenLine line_on(const ScreensInstant& model, const Place& place, const Camera& camera, const Band& band, double py) {
+    const double scale = band.perspective ? place.middle() : 1.0;
+    const dvec2 first = camera.slope(band.column0 * band.spacing + 0.5, py);
+    const dvec3 moved = camera.position - model.reference.position;
+    return {glm::dot(moved, model.reference.right) + scale * first.x, glm::dot(moved, model.reference.up) + scale * first.y,
+            scale * band.spacing / camera.f_px};
+}
+
+/// g ∇ψ + ψ ∇g along a row, in place.
+void apply_falloff(const ScreensInstant& model, const ScreenLine& line, const Place& place, const Camera& camera,
+                   const std::vector<float>& values, std::vector<float>& uv) {
+    const Camera& reference = model.reference;
+    const dvec3 first = reference.position + line.x0 * reference.right + line.y0 * reference.up +
+                        (place.middle() + advance_of(model, camera)) * reference.forward;
+    const bool level = glm::dot(model.falloff->normal, reference.right) == 0;
+    float gain = 0, across_x = 0, across_y = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i == 0 || !level) {
+            const IndexSample g = falloff_at(*model.falloff, first + (static_cast<double>(i) * line.step) * reference.right);
+            gain = static_cast<float>(g.n);
+            across_x = static_cast<float>(glm::dot(g.gradient, reference.right));
+            across_y = static_cast<float>(glm::dot(g.gradient, reference.up));
         }
-        sums.store(layer);
+        uv[2 * i] = gain * uv[2 * i] + values[i] * across_x;
+        uv[2 * i + 1] = gain * uv[2 * i + 1] + values[i] * across_y;
     }
 }
 
+/// factor[i] = f √L³ at slopes (sx + i step, sy).
+EIKONAL_CLONES void slant_factors(float sx, float step, float sy, float f, int n, float* factor) {
+    const float across = 1 + sy * sy;
+    for (int i = 0; i < n; ++i) {
+        const float s = sx + static_cast<float>(i) * step;
+        const float l = std::sqrt(across + s * s);
+        factor[i] = f * l * std::sqrt(l);
+    }
+}
+
+/// nodes[i] += factor[i] (length, slope) × (u, up·v): up is -pixel aspect.
+EIKONAL_CLONES void add_bends(const float* uv, const float* factor, float length, float slope, float up, int n,
+                              Node* nodes) {
+    const Node lever{length, length * up, slope, slope * up};
+    for (int i = 0; i < n; ++i) {
+        const float f = factor[i];
+        const float u = uv[2 * i], v = uv[2 * i + 1];
+        nodes[i] += Node{f, f, f, f} * lever * Node{u, v, u, v};
+    }
+}
+
+/// Rows of nodes under axes parallel to the reference camera's.
+class AlignedRows {
+  public:
+    AlignedRows(const ScreensInstant& model, Band& band, const Camera& camera, std::vector<Active>& active)
+        : model_(model),
+          band_(band),
+          camera_(camera),
+          active_(active),
+          uv_(2 * static_cast<std::size_t>(band.columns)),
+          values_(model.falloff ? static_cast<std::size_t>(band.columns) : 0),
+          factor_(static_cast<std::size_t>(band.columns), static_cast<float>(camera.f_px)) {
+        for (Active& a : active_) {
+            const ScreenLine line = line_on(model, a.place, camera, band, 0);
+            a.columns = a.screen->columns(line.x0, line.step, band.columns);
+        }
+    }
+
+    void fill(int row) {
+        const double py = (band_.row0 + row) * band_.spacing + 0.5;
+        if (band_.perspective) {
+            const dvec2 s = camera_.slope(band_.column0 * band_.spacing + 0.5, py);
+            slant_factors(static_cast<float>(s.x), static_cast<float>(band_.spacing / camera_.f_px), static_cast<float>(s.y),
+                          static_cast<float>(camera_.f_px), band_.columns, factor_.data());
+        }
+        // With a single layer the levers are the samples' weights, and the screens add up before they become nodes.
+        const bool single = band_.depths.size() == 1;
+        if (single) std::fill(uv_.begin(), uv_.end(), 0.0f);
+        for (const Active& a : active_) {
+            const double lever = single ? slab_lever(a.place.near, a.place.far, band_.depths[0]).length : 1.0;
+            if (!single) std::fill(uv_.begin(), uv_.end(), 0.0f);
+            sample(a, py, lever);
+            if (single) continue;
+            for (std::size_t k = 0; k < band_.depths.size(); ++k) {
+                const SlabLever at = slab_lever(a.place.near, a.place.far, band_.depths[k]);
+                if (at.length > 0) store(row, k, at);
+            }
+        }
+        // Beyond its only layer the displacement stays as it is: X ∝ z in perspective.
+        if (single) store(row, 0, {1, band_.perspective ? 1 / band_.depths[0] : 0.0});
+    }
+
+  private:
+    /// Adds a screen's bends times `lever` to uv_.
+    void sample(const Active& a, double py, double lever) {
+        const ScreenLine line = line_on(model_, a.place, camera_, band_, py);
+        const auto weight = static_cast<float>(model_.strength * a.place.weight * lever);
+        if (!model_.falloff) {
+            a.screen->add_gradients(a.columns, line.y0, weight, uv_.data());
+            return;
+        }
+        std::vector<float> bend(uv_.size());
+        std::fill(values_.begin(), values_.end(), 0.0f);
+        a.screen->add_gradients(a.columns, line.y0, weight, bend.data());
+        a.screen->add_values(a.columns, line.y0, weight, values_.data());
+        apply_falloff(model_, line, a.place, camera_, values_, bend);
+        for (std::size_t i = 0; i < uv_.size(); ++i) uv_[i] += bend[i];
+    }
+    void store(int row, std::size_t layer, const SlabLever& lever) {
+        add_bends(uv_.data(), factor_.data(), static_cast<float>(lever.length), static_cast<float>(lever.slope),
+                  static_cast<float>(-camera_.pixel_aspect), band_.columns, band_.row(row, layer));
+    }
+
+    const ScreensInstant& model_;
+    Band& band_;
+    const Camera& camera_;
+    std::vector<Active>& active_;
+    std::vector<float> uv_, values_, factor_;
+};
+
+/// A row of nodes of any camera, ray by ray.
 void fill_turned_row(const ScreensInstant& model, Band& band, const Camera& camera, const std::vector<Active>& active,
                      int row) {
     const Camera& reference = model.reference;
+    const double advance = advance_of(model, camera);
     for (int c = 0; c < band.columns; ++c) {
         const StraightRay ray = straight_ray(camera, (band.column0 + c) * band.spacing + 0.5,
                                              (band.row0 + row) * band.spacing + 0.5);
-        const double advance = glm::dot(ray.direction, reference.forward);
-        if (advance <= 0) continue;  // a ray at the very edge of a wide view that never meets the screens
+        const double rate = glm::dot(ray.direction, reference.forward);
+        if (rate <= 0) continue;  // a ray at the very edge of a wide view that never meets the screens
         const double start = glm::dot(ray.origin - reference.position, reference.forward);
         for (const Active& a : active) {
-            // active depths are measured from the camera; an orthographic ray may start elsewhere
-            const double plane = a.place.depth + glm::dot(camera.position - reference.position, reference.forward);
-            const double z = (plane - start) / advance;
-            if (z <= 0) continue;
-            const dvec3 p = ray.at(z);
+            // places are measured from the camera; an orthographic ray may start elsewhere
+            const double far = (a.place.far + advance - start) / rate;
+            const double near = std::max(0.0, (a.place.near + advance - start) / rate);
+            if (near >= far || near >= band.depths.back()) continue;
+            const dvec3 p = ray.at(0.5 * (near + far));
             const dvec3 q = p - reference.position;
             const auto s = a.screen->sample(glm::dot(q, reference.right), glm::dot(q, reference.up));
             dvec3 bend = double{s.dx} * reference.right + double{s.dy} * reference.up;
@@ -144,12 +201,12 @@ void fill_turned_row(const ScreensInstant& model, Band& band, const Camera& came
                 const dvec3 across = g.gradient - glm::dot(g.gradient, reference.forward) * reference.forward;
                 bend = g.n * bend + double{s.value} * across;
             }
-            const dvec2 kick = image_shift(camera, ray, (model.strength * a.place.weight * ray.length) * bend);
-            for (std::size_t layer = 0; layer < band.depths.size(); ++layer) {
-                const double reach = band.depths[layer] - z;
-                if (reach <= 0) continue;
-                band.row(row, layer)[c] += Node{static_cast<float>(reach * kick.x), static_cast<float>(reach * kick.y),
-                                                static_cast<float>(kick.x), static_cast<float>(kick.y)};
+            const double weight = ray.length * std::sqrt((far - near) * ray.length / a.screen->thickness());
+            const dvec2 kick = image_shift(camera, ray, (model.strength * weight) * bend);
+            for (std::size_t k = 0; k < band.depths.size(); ++k) {
+                const SlabLever lever = slab_lever(near, far, band.depths[k]);
+                band.row(row, k)[c] += Node{static_cast<float>(lever.length * kick.x), static_cast<float>(lever.length * kick.y),
+                                            static_cast<float>(lever.slope * kick.x), static_cast<float>(lever.slope * kick.y)};
             }
         }
     }
@@ -161,43 +218,35 @@ std::vector<Band> ScreensInstant::bands(const Camera& camera, double nearest, do
     if (glm::dot(camera.forward, reference.forward) < kWidestTurn)
         throw FrameError("the camera has turned more than 60 degrees from the shot's first view, beyond which thin screens do not hold; "
                          "use form=\"lattice\" or form=\"gradient-noise\" for this medium");
-    const double offset = camera_offset(*this, camera);
     std::vector<Band> result;
     for (int spacing = 1; spacing <= kWidestSpacing; spacing *= 2) {
+        const std::vector<Active> active = active_screens(*this, camera, farthest, spacing);
+        if (active.empty()) continue;
         Band band;
         band.spacing = spacing;
         band.perspective = camera.projection == Projection::Perspective;
-        band.interpolation = DepthInterpolation::Linear;
-        bool any = false;
-        band.depths.push_back(nearest);
-        for (const ScreenSnapshot& screen : screens) {
-            const Place place = place_of(screen, offset);
-            if (place.weight <= 0 || place.depth >= farthest || spacing_of(screen, camera, place.depth) != spacing) continue;
-            any = true;
-            if (place.depth > nearest) band.depths.push_back(place.depth);
-        }
-        if (farthest > nearest) band.depths.push_back(farthest);
-        if (any) result.push_back(std::move(band));
+        band.interpolation = DepthInterpolation::Hermite;
+        band.depths = {nearest, farthest};
+        for (const Active& a : active)
+            for (const double end : {a.place.near, a.place.far})
+                if (end > nearest && end < farthest) band.depths.push_back(end);
+        std::sort(band.depths.begin(), band.depths.end());
+        band.depths.erase(std::unique(band.depths.begin(), band.depths.end()), band.depths.end());
+        // Behind the last slab X is straight.
+        const double last = std::max(nearest, active.back().place.far);
+        while (same_axes(camera, reference) && band.depths.size() > 1 && band.depths[band.depths.size() - 2] >= last) band.depths.pop_back();
+        result.push_back(std::move(band));
     }
     return result;
 }
 
 void ScreensInstant::fill(Band& band, const Camera& camera) const {
-    const double offset = camera_offset(*this, camera);
-    std::vector<Active> active;
-    for (const ScreenSnapshot& screen : screens) {
-        const Place place = place_of(screen, offset);
-        if (place.weight > 0 && place.depth < band.depths.back() && spacing_of(screen, camera, place.depth) == band.spacing)
-            active.push_back({&screen, place});
-    }
-    std::stable_sort(active.begin(), active.end(),
-                     [](const Active& a, const Active& b) { return a.place.depth < b.place.depth; });
-    const bool aligned = same_axes(camera, reference);
-    for (int r = 0; r < band.rows; ++r) {
-        if (aligned)
-            fill_aligned_row(*this, band, camera, active, r);
-        else
-            fill_turned_row(*this, band, camera, active, r);
+    std::vector<Active> active = active_screens(*this, camera, band.depths.back(), band.spacing);
+    if (same_axes(camera, reference)) {
+        AlignedRows rows(*this, band, camera, active);
+        for (int r = 0; r < band.rows; ++r) rows.fill(r);
+    } else {
+        for (int r = 0; r < band.rows; ++r) fill_turned_row(*this, band, camera, active, r);
     }
 }
 

@@ -1,14 +1,21 @@
 /// Model `screens`: thin screens across a perspective or orthographic view (PHYSICS 6, *added*):
 ///
-///     angle(θ; D) = Σ_m (1 - w_m/D) ∇⊥ψ_m(w_m θ),   w_m < D
+///     X(z) = f_px Σ_m lever_m(z) √L³ ∇⊥ψ_m,      lever_m(z) = z - w_m behind slab m       (noise/screen_layout.h)
+///
+/// so that d = X(D)/D is f_px Σ (1 - w_m/D) ∇⊥ψ_m on the axis. A slanted ray has L times the lever, and crosses L times
+/// the air, whose bend is √L times as large.
 ///
 /// The screens are planes fixed in the world, perpendicular to the axis of the shot's reference camera and placed from
 /// its position, so that displacement is consistent when the camera moves: each ray is cut with the planes where it
-/// really meets them. A slab that the camera has partly passed keeps the part ahead of it: its kick is scaled by the
-/// root of that part (the variance of a slab is proportional to its thickness) and acts from that part's middle, so
-/// that nothing jumps when the camera flies through.
+/// really meets them. A slab that the camera has partly passed keeps the part ahead: its bend is scaled by the root of
+/// that part (the variance of a slab is proportional to its thickness) and comes from that part's middle, so that
+/// nothing jumps when the camera flies through. The air ends at the far distance of the reference camera, and begins at
+/// its place: a camera that backs away has none before the first slab, one that advances is left with less.
 ///
-/// Range: the view axis within kWidestTurn of the reference axis; UserError beyond.
+/// Under a camera that has turned, each ray's levers are its own; between the layers of a band they are then a cubic
+/// through those at the axis' slabs, which errs by a few per cent of one screen's part at most.
+///
+/// Range: the view axis within kWidestTurn of the reference axis; FrameError beyond.
 #pragma once
 
 #include <optional>
@@ -30,10 +37,11 @@ struct ScreensInstant {
     std::optional<Falloff> falloff;
 
     /// Bands, empty as yet, for the depths nearest … farthest: screens whose pattern allows the same node spacing share
-    /// one, and its layers are the planes at which X has a kink. Screens beyond `farthest` are left out.
+    /// one, and its layers are the ends of their slabs, between which X is a parabola at most. Screens beyond `farthest`
+    /// are left out.
     std::vector<Band> bands(const Camera& camera, double nearest, double farthest) const;
 
-    /// Adds X and S of the screens that `band` stands for.
+    /// Sets X and S of the screens that `band` stands for. Its nodes are zero.
     void fill(Band& band, const Camera& camera) const;
 };
 

@@ -10,9 +10,9 @@
 /// inverse depth, zero metres in the other types without a range, and pixels outside the map's data window. Results are
 /// limited to kNearestDepth or more; so they are always finite and positive.
 ///
-/// Errors. UserError: integers without a range (a code is no length), a range that is not finite, negative, empty, or
+/// Errors. UserError: an unknown channel, integers without a range (a code is no length), a range that is not finite, negative, empty, or
 /// for inverse depth zero. FrameError: a negative depth (with the count), no depth at all (nothing but zeros and NaN),
-/// another size than the footage's, an unknown channel, an unreadable file.
+/// another size than the footage's, an unreadable file.
 #pragma once
 
 #include <array>

@@ -57,13 +57,14 @@ bool jpeg_is_whole(const fs::path& path) {
     return false;
 }
 
-/// Whether a PNG has its end chunk; libpng would tell, but prints on stderr by itself.
+/// Whether a file is no PNG or has its end chunk; libpng would tell, but prints on stderr by itself, even when opening.
 bool png_is_whole(const fs::path& path) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     constexpr long kSignature = 8, kChecksum = 4;
-    unsigned char head[8];  // length, big-endian, and type of a chunk
+    unsigned char head[8];  // the signature; then length, big-endian, and type of a chunk
+    if (!file || std::fread(head, 1, 8, file.get()) != 8 || std::memcmp(head, "\x89PNG\r\n\x1a\n", 8) != 0) return true;
     long at = kSignature;
-    while (file && std::fseek(file.get(), at, SEEK_SET) == 0 && std::fread(head, 1, 8, file.get()) == 8) {
+    while (std::fseek(file.get(), at, SEEK_SET) == 0 && std::fread(head, 1, 8, file.get()) == 8) {
         if (std::memcmp(head + 4, "IEND", 4) == 0) return true;
         at += 8 + kChecksum + ((long{head[0]} << 24) | (long{head[1]} << 16) | (long{head[2]} << 8) | long{head[3]});
     }
@@ -82,6 +83,7 @@ void check_kind(const fs::path& path, const OIIO::ImageSpec& spec) {
 
 Picture read(const fs::path& path, bool with_pixels) {
     check_file(path);
+    if (!png_is_whole(path)) refuse(path, "the file is truncated");
     OIIO::ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;  // raw codes; load_group premultiplies in linear light
     const auto input = OIIO::ImageInput::open(path.string(), &hints);
@@ -89,9 +91,7 @@ Picture read(const fs::path& path, bool with_pixels) {
 
     Picture picture;
     picture.format = input->format_name();
-    if (with_pixels &&
-        ((picture.format == "jpeg" && !jpeg_is_whole(path)) || (picture.format == "png" && !png_is_whole(path))))
-        refuse(path, "the file is truncated");
+    if (with_pixels && picture.format == "jpeg" && !jpeg_is_whole(path)) refuse(path, "the file is truncated");
     for (int index = 0; input->seek_subimage(index, 0); ++index) {
         Part& part = picture.parts.emplace_back();
         part.spec = input->spec();

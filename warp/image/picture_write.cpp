@@ -21,7 +21,11 @@ namespace {
 /// Opens, writes every part, closes.
 void write_parts(OIIO::ImageOutput& output, const std::string& name, const fs::path& path, const Picture& picture) {
     std::vector<OIIO::ImageSpec> specs;
-    for (const Part& part : picture.parts) specs.push_back(part.spec);
+    for (const Part& part : picture.parts) {
+        OIIO::ImageSpec& spec = specs.emplace_back(part.spec);
+        // Where there is no date, OpenImageIO would put today's: the same frame would not be the same bytes tomorrow.
+        if (spec.find_attribute("DateTime") == nullptr) spec.attribute("DateTime", "");
+    }
     const bool many = specs.size() > 1;
     if (many && !output.supports("multiimage"))
         refuse(path, fmt::format("format '{}' holds one picture, not {}", output.format_name(), specs.size()));
@@ -47,6 +51,12 @@ void verify(const fs::path& temporary, const fs::path& path) {
 }
 
 }  // namespace
+
+bool can_write_picture(const fs::path& path) {
+    const bool known = OIIO::ImageOutput::create(path.string()) != nullptr;
+    OIIO::geterror();  // clears the thread's message
+    return known;
+}
 
 void write_picture(const fs::path& path, const Picture& picture) {
     if (picture.parts.empty()) refuse(path, "there is nothing to write");

@@ -84,7 +84,7 @@ Plane take_plane(const Picture& picture, const std::filesystem::path& file, std:
         if (!place) place = single(picture);
     }
     if (!place)
-        throw FrameError(fmt::format("'{}': {}; it has {}", file.string(),
+        throw UserError(fmt::format("'{}': {}; it has {}", file.string(),
                                      channel.empty()
                                          ? std::string("which channel to use is not clear, name it as FILE:CHANNEL")
                                          : fmt::format("there is no channel '{}'", channel),

@@ -24,8 +24,8 @@ struct Plane {
 /// size, or its pixels the size of `data`; what its own data window lacks is `outside`.
 ///
 /// An empty `channel` looks for `preferred` in turn, then a single-channel picture, then a main colour layer that is
-/// grey (equal R, G, B everywhere). `file` stands in messages. FrameError: no such channel (lists what there is), or
-/// another size (names both).
+/// grey (equal R, G, B everywhere). `file` stands in messages. UserError: no such channel (lists what there is).
+/// FrameError: another size (names both).
 Plane take_plane(const Picture& picture, const std::filesystem::path& file, std::string_view channel,
                  std::span<const std::string_view> preferred, const PixelWindow& data, const PixelWindow& display,
                  float outside);

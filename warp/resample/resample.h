@@ -17,10 +17,11 @@
 ///  - Lanczos3: 6 x 6 samples, normalised; weights within lanczos3_weight_error of sinc(x) sinc(x/3) / sum.
 ///  - Area: the mean of the source over the pixel's footprint, see area.h. Weights are not negative. Where the map
 ///    shifts or magnifies it is Bilinear.
-/// Cubic and Lanczos3 have negative lobes, and nothing is clamped: a lone highlight H over black is ringed by values
-/// down to -0.075 H (Cubic) and -0.14 H (Lanczos3), and a picture (or alpha) within 0...1 may leave it by
-/// cubic_overshoot and lanczos3_overshoot at the worst. Bilinear and Area never leave it: they suit plates with strong
-/// highlights. Values stay finite for finite input below 1e38 in magnitude (Bilinear, Area: below 3.4e38).
+/// Cubic and Lanczos3 have negative lobes: a white pixel over black is ringed by values down to -0.075 and -0.15. A
+/// headlight a hundred times white would be ringed in black, so a result never falls below the smallest of its four nearest
+/// samples by more than cubic_undershoot or lanczos3_undershoot: any light rings as white does. Nothing else is clamped: a
+/// picture (or alpha) within 0...1 may exceed 1 by cubic_overshoot and lanczos3_overshoot at the worst. Bilinear and Area
+/// never leave its range. Values stay finite for finite input below 1e38 in magnitude (Bilinear, Area: below 3.4e38).
 ///
 /// Alpha must be premultiplied, as in the files. Channels that are not colour are never filtered: nearest_source().
 /// Bytes do not depend on the number of threads, on the processor, or on how an image is cut into windows (given
@@ -47,7 +48,9 @@ inline constexpr float max_displacement = 1 << 30;
 inline constexpr int max_coordinate = 1 << 28;
 /// Largest error of a Lanczos3 weight, and of the sum of the six from 1.
 inline constexpr double lanczos3_weight_error = 4e-7;
-/// How far a picture within 0...1 may come out below 0 or above 1: ((sum of |weights|)^2 - 1)/2 at half a pixel.
+/// How far below its four nearest samples a result may fall, in units of reference white.
+inline constexpr float cubic_undershoot = 0.075F, lanczos3_undershoot = 0.15F;
+/// How far a picture within 0...1 may come out above 1: ((sum of |weights|)^2 - 1)/2 at half a pixel.
 inline constexpr double cubic_overshoot = 0.282;
 inline constexpr double lanczos3_overshoot = 0.70;
 

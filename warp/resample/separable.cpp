@@ -30,6 +30,21 @@ EIKONAL_INLINE Pixel weigh(const Pixel* p, const float (*w)[span_length], int i)
     return sum;
 }
 
+/// How far a filter may fall below its four nearest samples; nothing for the one that never does.
+template <int taps>
+constexpr float kUndershoot = taps == 4 ? cubic_undershoot : lanczos3_undershoot;
+
+EIKONAL_INLINE Pixel smaller(Pixel a, Pixel b) {
+    return a < b ? a : b;
+}
+
+/// Keeps the negative lobes of a highlight from drawing a black ring. NaN passes.
+template <int taps>
+EIKONAL_INLINE Pixel limit_undershoot(Pixel value, Pixel nearest) {
+    const Pixel low = nearest - kUndershoot<taps>;
+    return value < low ? low : value;
+}
+
 /// Any pixel: samples outside follow the edge mode, an axis with an integer displacement is not filtered.
 template <int taps>
 Pixel sample_careful(const Source& source, const Span& span, int i) {
@@ -39,13 +54,17 @@ Pixel sample_careful(const Source& source, const Span& span, int i) {
     const std::int64_t x = span.x[i] - (still_x ? 0 : before), y = span.y[i] - (still_y ? 0 : before);
     int row[taps];
     for (int j = 0; j < ny; ++j) row[j] = resolve(y + j, source.height, source.edge);
-    Pixel columns[taps], samples[taps];
+    Pixel columns[taps], samples[taps], nearest[taps];
     for (int k = 0; k < nx; ++k) {
         const int column = resolve(x + k, source.width, source.edge);
         for (int j = 0; j < ny; ++j) samples[j] = load_any(source, column, row[j]);
         columns[k] = still_y ? samples[0] : weigh<taps>(samples, span.wy, i);
+        nearest[k] = still_y ? samples[0] : smaller(samples[before], samples[before + 1]);
     }
-    return still_x ? columns[0] : weigh<taps>(columns, span.wx, i);
+    if (still_x && still_y) return columns[0];
+    const Pixel value = still_x ? columns[0] : weigh<taps>(columns, span.wx, i);
+    if constexpr (taps == 2) return value;
+    return limit_undershoot<taps>(value, still_x ? nearest[0] : smaller(nearest[before], nearest[before + 1]));
 }
 
 /// Two neighbouring pixels of four channels.
@@ -78,7 +97,12 @@ EIKONAL_INLINE Pixel sample_inside(const Source& source, const Span& span, int i
             columns[k] = weigh<taps>(samples, span.wy, i);
         }
     }
-    return weigh<taps>(columns, span.wx, i);
+    const Pixel value = weigh<taps>(columns, span.wx, i);
+    if constexpr (taps == 2) return value;
+    const float* inner = source.at(span.x[i], span.y[i], channels);
+    const Pixel nearest = smaller(smaller(load<channels>(inner), load<channels>(inner + source.stride)),
+                                  smaller(load<channels>(inner + channels), load<channels>(inner + source.stride + channels)));
+    return limit_undershoot<taps>(value, nearest);
 }
 
 template <int taps, int channels>

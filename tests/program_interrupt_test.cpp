@@ -1,0 +1,103 @@
+// Ctrl-C, SIGTERM and SIGKILL in the middle of a sequence: finished frames are whole and are not made again.
+
+#include <signal.h>
+
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include "tests/program_run.h"
+
+namespace program_test {
+namespace {
+
+class InterruptTest : public Program {
+  protected:
+    InterruptTest() {
+        air();
+        paint("in.exr", OIIO::ImageSpec(160, 120, 3, OIIO::TypeDesc::HALF),
+              [](int x, int y, int c) { return static_cast<float>((x * 7 + y * 3 + c) % 11) / 11; });
+    }
+    static Words command(const std::string& frames, const std::string& output = "o.####.exr") {
+        return {"warp", "in.exr", "-o", output, "--scene", "air.toml", "--frames", frames};
+    }
+    Words finished() const {
+        Words found;
+        for (const std::string& name : names())
+            if (name.starts_with("o.")) found.push_back(name);
+        return found;
+    }
+    int hidden() const {
+        int count = 0;
+        for (const std::string& name : names()) count += name.starts_with(".");
+        return count;
+    }
+    /// Starts a long run, lets it make some frames and sends the signals.
+    Ended interrupt(std::initializer_list<int> signals, const std::string& output = "o.####.exr",
+                    bool wait_for_frames = true) const {
+        const pid_t process = start(command("1-3000", output));
+        for (int i = 0; i < 1000 && (wait_for_frames ? finished().size() < 4 : hidden() == 0); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        for (const int signal : signals) {
+            kill(process, signal);
+            std::this_thread::sleep_for(std::chrono::milliseconds(3));
+        }
+        return finish(process);
+    }
+    /// All that is there is readable, and the next run leaves it alone.
+    void check_resumes() const {
+        const Words before = finished();
+        ASSERT_GE(before.size(), 4u);
+        ASSERT_LT(before.size(), 3000u);
+        std::map<std::string, fs::file_time_type> times;
+        for (const std::string& name : before) {
+            EXPECT_EQ(read(name).spec.width, 160);
+            times[name] = fs::last_write_time(path(name));
+        }
+        const std::string last = std::to_string(before.size() + 3);
+        const Ended ended = run(command("1-" + last));
+        EXPECT_EQ(ended.status, 0) << ended.err;
+        EXPECT_EQ(ended.lines().size(), 1u) << ended.err;
+        EXPECT_NE(ended.err.find(std::to_string(before.size()) + " frames are already there"), std::string::npos)
+            << ended.err;
+        for (const auto& [name, time] : times) EXPECT_EQ(fs::last_write_time(path(name)), time) << name;
+        EXPECT_EQ(finished().size(), before.size() + 3);
+        EXPECT_EQ(hidden(), 0) << "what the killed run began is cleared";
+    }
+};
+
+TEST_F(InterruptTest, CtrlCEndsAfterTheFramesUnderWay) {
+    refused(interrupt({SIGINT}), 1, {"interrupted after", "of 3000 frames", "the same command makes the rest"});
+    EXPECT_EQ(hidden(), 0);
+    check_resumes();
+}
+
+TEST_F(InterruptTest, Terminated) {
+    refused(interrupt({SIGTERM}), 1, {"interrupted after", "of 3000 frames"});
+    EXPECT_EQ(hidden(), 0);
+    check_resumes();
+}
+
+TEST_F(InterruptTest, CtrlCAgainAndAgainIsStillAnExitStatus) {
+    EXPECT_EQ(interrupt({SIGINT, SIGINT, SIGINT}).status, 1);
+    check_resumes();
+}
+
+TEST_F(InterruptTest, Killed) {
+    EXPECT_EQ(interrupt({SIGKILL}).status, -SIGKILL);
+    check_resumes();
+}
+
+TEST_F(InterruptTest, MovieLeavesNothing) {
+    refused(interrupt({SIGINT}, "o.mp4", false), 1, {"interrupted after", "the movie was not written"});
+    EXPECT_EQ(finished(), Words{});
+    EXPECT_EQ(hidden(), 0);
+    EXPECT_EQ(interrupt({SIGKILL}, "o.mp4", false).status, -SIGKILL);
+    EXPECT_EQ(finished(), Words{});
+    silent(run(command("1-2", "o.mp4")));
+    EXPECT_EQ(finished(), Words{"o.mp4"});
+    EXPECT_EQ(hidden(), 0);
+}
+
+}  // namespace
+}  // namespace program_test

@@ -1,0 +1,129 @@
+// Movies in and out: frame count, rate, audio and bit depth; stills, sequences and movies into one another.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/program_run.h"
+
+namespace program_test {
+namespace {
+
+class MovieTest : public Program {
+  protected:
+    MovieTest() { air(); }
+    void make_clip(const std::string& name, Words codec) const {
+        Words words{"ffmpeg",
+                    "-v",
+                    "error",
+                    "-f",
+                    "lavfi",
+                    "-i",
+                    "testsrc2=size=64x48:rate=30000/1001:duration=0.4",
+                    "-f",
+                    "lavfi",
+                    "-i",
+                    "sine=duration=0.4"};
+        words.insert(words.end(), codec.begin(), codec.end());
+        words.push_back(name);
+        silent(tool(words));
+    }
+    /// Frames, rate and pixel format of the video, and codecs of all streams.
+    struct Facts {
+        std::string frames, rate, pixels;
+        Words codecs;
+    };
+    Facts facts(const std::string& name) const {
+        const Ended probe = tool({"ffprobe", "-v", "error", "-count_frames", "-of", "json", "-show_streams", name});
+        Facts facts;
+        const auto probed = nlohmann::json::parse(probe.out, nullptr, false);
+        if (!probed.contains("streams")) {
+            ADD_FAILURE() << name << ": " << probe.err;
+            return facts;
+        }
+        for (const auto& stream : probed["streams"]) {
+            facts.codecs.push_back(stream["codec_name"]);
+            if (stream["codec_type"] != "video") continue;
+            facts.frames = stream["nb_read_frames"];
+            facts.rate = stream["r_frame_rate"];
+            facts.pixels = stream["pix_fmt"];
+        }
+        return facts;
+    }
+    std::string audio(const std::string& name) const {
+        return tool({"ffmpeg", "-v", "error", "-i", name, "-map", "0:a", "-c", "copy", "-f", "md5", "-"}).out;
+    }
+    Ended warp(const std::string& in, const std::string& out, Words more = {}) const {
+        more.insert(more.begin(), {"warp", in, "-o", out, "--scene", "air.toml"});
+        return run(std::move(more));
+    }
+};
+
+TEST_F(MovieTest, MovieToMovieKeepsItsFacts) {
+    make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
+    make_clip("b.mkv", {"-c:v", "ffv1", "-pix_fmt", "yuv422p10le", "-c:a", "flac"});
+    make_clip("c.mov",
+              {"-c:v", "libx265", "-x265-params", "log-level=none", "-pix_fmt", "yuv420p10le", "-c:a", "pcm_s16le"});
+    for (const char* name : {"a.mp4", "b.mkv", "c.mov"}) {
+        SCOPED_TRACE(name);
+        const std::string out = std::string("out.") + name;
+        silent(warp(name, out));
+        const Facts before = facts(name), after = facts(out);
+        EXPECT_EQ(before.frames, "12");
+        EXPECT_EQ(after.frames, before.frames);
+        EXPECT_EQ(after.rate, before.rate);
+        EXPECT_EQ(after.pixels, before.pixels);
+        EXPECT_EQ(after.codecs, before.codecs);
+        EXPECT_EQ(audio(out), audio(name));
+    }
+    const Ended again = warp("a.mp4", "out.a.mp4");
+    EXPECT_EQ(again.status, 0);
+    EXPECT_NE(again.err.find("already there and kept"), std::string::npos);
+}
+
+TEST_F(MovieTest, PartsOfAMovie) {
+    make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
+    silent(warp("a.mp4", "part.mp4", {"--frames", "3-6"}));
+    EXPECT_EQ(facts("part.mp4").frames, "4");
+    refused(warp("a.mp4", "p.mp4", {"--frames", "3-60"}), 2, {"--frames 3-60", "1 to 12"});
+    refused(warp("a.mp4", "p.mp4", {"--frames", "0-2"}), 2, {"--frames 0-2", "1 to 12"});
+    silent(warp("a.mp4", "s.####.png", {"--frames", "2,5"}));
+    EXPECT_TRUE(fs::exists(path("s.0002.png")) && fs::exists(path("s.0005.png")) && !fs::exists(path("s.0003.png")));
+    // the same frame whether or not others are made
+    silent(warp("a.mp4", "t.####.png"));
+    EXPECT_EQ(bytes("s.0005.png"), bytes("t.0005.png"));
+}
+
+TEST_F(MovieTest, StillsAndSequences) {
+    plate("in.png");
+    silent(warp("in.png", "still.mp4", {"--frames", "1-6"}));
+    EXPECT_EQ(facts("still.mp4").frames, "6");
+    EXPECT_EQ(facts("still.mp4").rate, "24/1");
+    silent(warp("still.mp4", "s.####.png"));
+    silent(warp("s.####.png", "back.mkv", {"--set", "time.fps=30"}));
+    EXPECT_EQ(facts("back.mkv").frames, "6");
+    EXPECT_EQ(facts("back.mkv").rate, "30/1");
+    plate("in.exr");
+    silent(warp("in.exr", "deep.mov", {"--frames", "1-2"}));
+    EXPECT_EQ(facts("deep.mov").pixels, "yuv420p10le") << "float pictures are not cut to 8 bits";
+}
+
+TEST_F(MovieTest, Refusals) {
+    make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
+    fs::create_symlink("a.mp4", path("link.mp4"));
+    const std::string before = bytes("a.mp4");
+    for (const char* out : {"a.mp4", "./a.mp4", "link.mp4"})
+        refused(warp("a.mp4", out, {"--overwrite"}), 2, {"the input", "-o", "same file"});
+    refused(warp("link.mp4", "a.mp4", {"--overwrite"}), 2, {"same file"});
+    EXPECT_EQ(bytes("a.mp4"), before);
+    refused(warp("a.mp4", "b.mp4", {"--depth", ":Z"}), 2, {"--depth :Z", "movie"});
+    refused(warp("a.mp4", "b.mp4", {"--codec", "divx9"}), 2, {"divx9", "h264"});
+    write_text("cut.mp4", before.substr(0, before.size() / 2));
+    EXPECT_EQ(warp("cut.mp4", "b.mp4").status, 1);
+    make_clip("c.mkv", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
+    const std::string whole = bytes("c.mkv");
+    write_text("cut.mkv", whole.substr(0, whole.size() * 6 / 10));
+    EXPECT_EQ(warp("cut.mkv", "b.mkv").status, 1);
+    EXPECT_FALSE(fs::exists(path("b.mp4")) || fs::exists(path("b.mkv")));
+}
+
+}  // namespace
+}  // namespace program_test
