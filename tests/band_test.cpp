@@ -11,8 +11,8 @@ namespace {
 Node synthetic(double x, double y, double z, int degree) {
     const double u = x / 40, v = y / 40;
     const double a = std::pow(u, degree) - 0.7 * std::pow(v, degree) + u * v, b = 0.3 * u - v;
-    return Node{static_cast<float>(a * z + 0.01 * z * z * z), static_cast<float>(b * z * z), static_cast<float>(a + 0.03 * z * z),
-            static_cast<float>(2 * b * z)};
+    return Node{static_cast<float>(a * z + 0.01 * z * z * z), static_cast<float>(b * z * z),
+                static_cast<float>(a + 0.03 * z * z), static_cast<float>(2 * b * z)};
 }
 
 Band filled(const PixelWindow& window, int spacing, std::vector<double> depths, int degree, bool perspective,
@@ -26,7 +26,8 @@ Band filled(const PixelWindow& window, int spacing, std::vector<double> depths, 
     for (int r = 0; r < band.rows; ++r)
         for (std::size_t k = 0; k < band.depths.size(); ++k)
             for (int c = 0; c < band.columns; ++c)
-                band.row(r, k)[c] = synthetic((band.column0 + c) * spacing, (band.row0 + r) * spacing, band.depths[k], degree);
+                band.row(r, k)[c] =
+                    synthetic((band.column0 + c) * spacing, (band.row0 + r) * spacing, band.depths[k], degree);
     return band;
 }
 

@@ -38,7 +38,9 @@ std::vector<Band> bands_of(const BendOf& bend, std::vector<double> depths) {
 
 struct Map {
     std::vector<Shift> d;
-    Shift at(int x, int y) const { return d[static_cast<std::size_t>((y - kWindow.y0) * kWindow.width + x - kWindow.x0)]; }
+    Shift at(int x, int y) const {
+        return d[static_cast<std::size_t>((y - kWindow.y0) * kWindow.width + x - kWindow.x0)];
+    }
 };
 
 Map meet(const std::vector<Band>& bands, const DepthPlane& depth, DepthMeeting how, int reach = 40) {
@@ -76,8 +78,11 @@ TEST(Meet, ForegroundStaysStillAndIsNeverDragged) {
     const auto post = [](int x) { return x >= 20 && x < 26; };
     const DepthPlane depth = plane_of([&](int x, int) { return post(x) ? 5.0 : 300.0; });
     for (const double a : {4.0, -4.0, 0.3, 12.5}) {
-        const auto bands = bands_of([a](int, int, double z) { return std::array{std::max(0.0, z - 5) * a, 0.0, z > 5 ? a : 0.0, 0.0}; },
-                                    {5, 5.001, 300});
+        const auto bands = bands_of(
+            [a](int, int, double z) {
+                return std::array{std::max(0.0, z - 5) * a, 0.0, z > 5 ? a : 0.0, 0.0};
+            },
+            {5, 5.001, 300});
         const double wall = a * (1 - 5 / 300.0);
         const Map march = meet(bands, depth, DepthMeeting::March), own = meet(bands, depth, DepthMeeting::Own);
         int dragged = 0;
@@ -133,7 +138,8 @@ TEST(Meet, SlopedGroundIsTheFirstRoot) {
     const auto ground = [](int, int y) { return 1200.0 / (y + 12); };
     const DepthPlane depth = plane_of(ground);
     const auto clamped = [&](double y) {
-        return ground(0, std::clamp(static_cast<int>(std::floor(y + 0.5)), kWindow.y0, kWindow.y0 + kWindow.height - 1));
+        return ground(0,
+                      std::clamp(static_cast<int>(std::floor(y + 0.5)), kWindow.y0, kWindow.y0 + kWindow.height - 1));
     };
     for (const double a : {2.6, -2.6, 0.4, -7.5}) {
         const auto bands = bands_of(sideways(0, a), {2, 200});
@@ -156,7 +162,8 @@ TEST(Meet, AnyDisplacementIsSafe) {
     for (const double a : {0.0, 1e-30, 1e5, -1e30}) {
         const auto bands = bands_of(sideways(a, -a), {1e-6, 1e9});
         for (const DepthMeeting how : kHow)
-            for (const Shift& d : meet(bands, depth, how, 1'000'000).d) EXPECT_FALSE(std::isnan(d.x) || std::isnan(d.y));
+            for (const Shift& d : meet(bands, depth, how, 1'000'000).d)
+                EXPECT_FALSE(std::isnan(d.x) || std::isnan(d.y));
     }
 }
 
@@ -169,8 +176,9 @@ TEST(DepthPlane, BlockExtremaCoverTheReach) {
         const int columns = block(22, kWindow.x0) - block(3, kWindow.x0) + 1;
         for (int y = 5; y < 14; ++y)
             for (int x = 3; x < 23; ++x) {
-                const auto& r = ranges[static_cast<std::size_t>((block(y, kWindow.y0) - block(5, kWindow.y0)) * columns +
-                                                                block(x, kWindow.x0) - block(3, kWindow.x0))];
+                const auto& r =
+                    ranges[static_cast<std::size_t>((block(y, kWindow.y0) - block(5, kWindow.y0)) * columns +
+                                                    block(x, kWindow.x0) - block(3, kWindow.x0))];
                 const int far = std::min(reach, 60);
                 for (int j = -far; j <= far; ++j)
                     for (int i = -far; i <= far; ++i) {

@@ -120,10 +120,10 @@ TEST_F(OutputTest, FieldSlices) {
     for (const char* name : {"n", "F.x", "F.y", "F.z"}) EXPECT_NO_THROW(slice.channel(name));
     EXPECT_EQ(slice.spec.format, OIIO::TypeDesc::FLOAT);
     const auto number = [&](const char* key) { return slice.spec.get_float_attribute(key, -1); };
-    EXPECT_FLOAT_EQ(number("eikonal/period.x"), 2);
+    EXPECT_FLOAT_EQ(number("eikonal/period.x"), 4);
     EXPECT_FLOAT_EQ(number("eikonal/period.z"), 40);
     EXPECT_FLOAT_EQ(number("eikonal/period.t"), 4);
-    EXPECT_FLOAT_EQ(number("eikonal/spacing.y"), 2.0f / 16);
+    EXPECT_FLOAT_EQ(number("eikonal/spacing.y"), 4.0f / 16);
     EXPECT_FLOAT_EQ(number("eikonal/z"), 3 * 40.0f / 16);
     EXPECT_FLOAT_EQ(number("eikonal/time"), 4.0f / 24);
     // The mean force over a period is zero, that of each row of F.x too: n is periodic.

@@ -191,11 +191,11 @@ horizontal_fov = 5
 type = "turbulence"
 form = "lattice"
 cn2 = 2e-10
-outer_scale = 0.5
-inner_scale = 0.1
+outer_scale = 1
+inner_scale = 0.3
 velocity = [0.2, 0.3, 0]
 lattice = [16, 16, 16, 8]
-period = [2, 2, 40, 4]
+period = [4, 4, 40, 4]
 )" + more + "\n[plate]\ndistance = 30\nfar = 40\n");
 }
 

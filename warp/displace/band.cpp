@@ -13,7 +13,9 @@ constexpr int kBefore = 2, kTaps = 6;  // nodes i-2 … i+3 around position i + 
 
 using Weights = std::array<float, kTaps>;
 
-int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+int floor_div(int a, int b) {
+    return a >= 0 ? a / b : -((-a + b - 1) / b);
+}
 
 /// Six-point Lagrange weights at fraction f in [0, 1) between nodes 2 and 3.
 Weights lagrange(double f) {
@@ -27,7 +29,9 @@ Weights lagrange(double f) {
     return w;
 }
 
-Node splat(float a) { return Node{a, a, a, a}; }
+Node splat(float a) {
+    return Node{a, a, a, a};
+}
 
 EIKONAL_CLONES void weighted_lines(const Node* in, std::size_t stride, std::size_t n, const Weights& w, Node* out) {
     for (std::size_t i = 0; i < n; ++i)
@@ -42,7 +46,9 @@ Mix mix_at(const Band& band, double z) {
     const std::size_t last = depths.size() - 1;
     const double scale = band.perspective ? 1 / z : 1.0;
     const auto scaled = [&](double v) { return static_cast<float>(v * scale); };
-    if (z <= depths.front()) return {z, 0, 0, band.perspective ? static_cast<float>(1 / depths[0]) : static_cast<float>(z / depths[0]), 0, 0, 0};
+    if (z <= depths.front())
+        return {z, 0, 0, band.perspective ? static_cast<float>(1 / depths[0]) : static_cast<float>(z / depths[0]),
+                0, 0, 0};
     if (z >= depths[last]) return {z, last, last, scaled(1), scaled(z - depths[last]), 0, 0};
     const auto upper = static_cast<std::size_t>(std::upper_bound(depths.begin(), depths.end(), z) - depths.begin());
     const std::size_t lower = upper - 1;
@@ -146,8 +152,8 @@ Node BandRow::node(std::size_t depth, int x) {
     const int phase = x - base * band_->spacing;
     const Node* p = line + base - kBefore;
     const Weights& w = band_->weights[static_cast<std::size_t>(phase)];
-    const Node v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] + splat(w[4]) * p[4] +
-                   splat(w[5]) * p[5];
+    const Node v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] +
+                   splat(w[4]) * p[4] + splat(w[5]) * p[5];
     cached_[depth] = v;
     cached_x_[depth] = x;
     return v;

@@ -44,8 +44,9 @@ struct Shift {
 
 /// Nodes for a band of rows. Layout [grid row][depth][grid column].
 struct Band {
-    int spacing = 1;          ///< pixels between nodes, >= 1
-    int column0 = 0, row0 = 0;  ///< first node, in units of `spacing`: node (i, j) is the centre of pixel (i, j)·spacing
+    int spacing = 1;  ///< pixels between nodes, >= 1
+    int column0 = 0,
+        row0 = 0;  ///< first node, in units of `spacing`: node (i, j) is the centre of pixel (i, j)·spacing
     int columns = 0, rows = 0;
     bool perspective = true;
     DepthInterpolation interpolation = DepthInterpolation::Linear;
@@ -92,7 +93,7 @@ class BandRow {
 
     const Band* band_ = nullptr;
     std::array<Mix, 2> recent_;  ///< depths repeat along a row
-    std::vector<Node> line_;  ///< the row interpolated vertically: [depth][column]
+    std::vector<Node> line_;     ///< the row interpolated vertically: [depth][column]
     const Node* source_ = nullptr;
     std::vector<Node> cached_;
     std::vector<int> cached_x_;

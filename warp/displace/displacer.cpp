@@ -29,7 +29,8 @@ constexpr float kLargestShift = 1e6f;
 constexpr double kOvershoot = 1.6;
 /// Least depth that layers are made for [m]: nearer ones move as at this one.
 constexpr double kLeastDepth = 1e-6;
-/// Spline error of `table` and `tables`, relative to the rms, and the nearest object, in parts of `far`, that padding is for.
+/// Spline error of `table` and `tables`, relative to the rms, and the nearest object, in parts of `far`, that padding
+/// is for.
 constexpr double kTableSplineError = 1e-2, kNearestPadded = 0.05;
 /// A lattice axis is the view's if they differ by less (1 - cosine).
 constexpr double kAligned = 1e-9;
@@ -38,13 +39,24 @@ constexpr double kLeastAlignment = 0.866;
 
 const char* name_of(Model model) {
     switch (model) {
-        case Model::Table: return "table";
-        case Model::Tables: return "tables";
-        case Model::Spectral: return "spectral";
-        case Model::Screens: return "screens";
-        case Model::FirstOrder: return "first-order";
+        case Model::Table:
+            return "table";
+        case Model::Tables:
+            return "tables";
+        case Model::Spectral:
+            return "spectral";
+        case Model::Screens:
+            return "screens";
+        case Model::FirstOrder:
+            return "first-order";
     }
     return "";
+}
+
+/// Padding of a lattice's spline for first-order: small lattices afford the finer one (noise/lattice_snapshot.h).
+int first_order_padding(const LatticeGeometry& geometry) {
+    constexpr std::size_t kMostPadded = 64 * 64 * 64;
+    return geometry.spatial_samples() <= kMostPadded ? 2 : 1;
 }
 
 /// One medium with the field that its form calls for and the model that reads it.
@@ -62,7 +74,8 @@ using LayerInstant = std::variant<ScreensInstant, TablesInstant, FirstOrderInsta
 }  // namespace
 
 std::uint64_t memory_limit() {
-    auto bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+    auto bytes =
+        static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
     // a container may have less than the machine
     std::ifstream file("/sys/fs/cgroup/memory.max");
     if (std::uint64_t own = 0; file >> own) bytes = std::min(bytes, own);
@@ -95,38 +108,54 @@ struct Displacer::Shot {
     void add_medium(std::size_t i) {
         const auto* spec = std::get_if<TurbulenceSpec>(&scene.media[i]);
         if (!spec)
-            throw UserError(fmt::format("medium.{}: eikonal warp and map hold media of type \"turbulence\" so far; remove this medium "
-                                        "from the scene or from the copy that you warp with", i));
+            throw UserError(fmt::format(
+                "medium.{}: eikonal warp and map hold media of type \"turbulence\" so far; remove this medium "
+                "from the scene or from the copy that you warp with",
+                i));
         const double source = spec->spectrum == SpectrumKind::VonKarman ? spec->cn2 : spec->strength;
         if (source * strength == 0) {
             notes.push_back(fmt::format("medium.{}: left out, its strength is zero", i));
             return;
         }
         switch (spec->form) {
-            case TurbulenceForm::Screens: add_screens(i, *spec); break;
-            case TurbulenceForm::Lattice: add_lattice(i, *spec); break;
-            case TurbulenceForm::GradientNoise: add_noise(i, *spec); break;
+            case TurbulenceForm::Screens:
+                add_screens(i, *spec);
+                break;
+            case TurbulenceForm::Lattice:
+                add_lattice(i, *spec);
+                break;
+            case TurbulenceForm::GradientNoise:
+                add_noise(i, *spec);
+                break;
         }
     }
 
     void add_screens(std::size_t i, const TurbulenceSpec& spec) {
         const double half_w = 0.5 * settings.width / reference.f_px;
         const double half_h = 0.5 * settings.height / (reference.f_px * reference.pixel_aspect);
-        const ScreenView view{perspective(), settings.far, half_w, half_h, 1 / reference.f_px, scene.optics.aperture, settings.fps};
+        const ScreenView view{perspective(),      settings.far,          half_w,      half_h,
+                              1 / reference.f_px, scene.optics.aperture, settings.fps};
         std::vector<ScreenGeometry> geometry = layout_screens(spec, view);
         check_screens(spec, geometry, memory_limit());
         const ScreenGeometry& middle = geometry[geometry.size() / 2];
-        notes.push_back(fmt::format("medium.{}: model screens ({} view): {} screens of {} x {} x {} samples over {:g} m, {:.3g} m apart, periods {:.3g} x {:.3g} m, {:.3g} s",
-                                    i, perspective() ? "perspective" : "orthographic", geometry.size(), middle.nx, middle.ny, middle.nt, settings.far,
-                                    middle.thickness, middle.Lx, middle.Ly, middle.T));
-        layers.push_back({i, Model::Screens, ScreenField(spec, std::move(geometry), reference.right, reference.up), 0, 0});
+        notes.push_back(
+            fmt::format("medium.{}: model screens ({} view): {} screens of {} x {} x {} samples over {:g} m, {:.3g} m "
+                        "apart, periods {:.3g} x {:.3g} m, {:.3g} s",
+                        i, perspective() ? "perspective" : "orthographic", geometry.size(), middle.nx, middle.ny,
+                        middle.nt, settings.far, middle.thickness, middle.Lx, middle.Ly, middle.T));
+        layers.push_back(
+            {i, Model::Screens, ScreenField(spec, std::move(geometry), reference.right, reference.up), 0, 0});
         if (glm::dot(spec.velocity, reference.forward) != 0)
-            notes.push_back(fmt::format("medium.{}: the wind's part along the view axis ({:.3g} m/s) does not move thin screens", i,
-                                        glm::dot(spec.velocity, reference.forward)));
+            notes.push_back(
+                fmt::format("medium.{}: the wind's part along the view axis ({:.3g} m/s) does not move thin screens", i,
+                            glm::dot(spec.velocity, reference.forward)));
         const double focusing = focusing_of(layers.back(), settings.far);
         if (focusing > 0.5)
-            warnings.push_back(fmt::format("medium.{}: focusing variance {:.2g} at {:g} m: rays fold, where any first-order warp is only plausible; "
-                                           "weaken cn2, shorten the distance, or widen the aperture", i, focusing, settings.far));
+            warnings.push_back(
+                fmt::format("medium.{}: focusing variance {:.2g} at {:g} m: rays fold, where any first-order warp is "
+                            "only plausible; "
+                            "weaken cn2, shorten the distance, or widen the aperture",
+                            i, focusing, settings.far));
     }
 
     void add_lattice(std::size_t i, const TurbulenceSpec& spec) {
@@ -145,20 +174,28 @@ struct Displacer::Shot {
             model = *settings.model;
             why = "asked for";
             if (model == Model::Spectral && !spectral_applies)
-                throw UserError(fmt::format("--model spectral: medium.{} needs an orthographic camera that looks along x, y or z, and a falloff "
-                                            "across the view, but here {}; use --model first-order or tables", i,
-                                            perspective() ? "the camera is perspective" : why == "asked for" && !aligned ? "the view is oblique" : "the falloff is along it"));
+                throw UserError(
+                    fmt::format("--model spectral: medium.{} needs an orthographic camera that looks along x, y or z, "
+                                "and a falloff "
+                                "across the view, but here {}; use --model first-order or tables",
+                                i,
+                                perspective()                    ? "the camera is perspective"
+                                : why == "asked for" && !aligned ? "the view is oblique"
+                                                                 : "the falloff is along it"));
             if (model != Model::FirstOrder && axis_alignment(reference, rays) < kLeastAlignment)
-                throw UserError(fmt::format("--model {}: the view is more than 30 degrees from every lattice axis; use --model first-order",
-                                            name_of(model)));
+                throw UserError(fmt::format(
+                    "--model {}: the view is more than 30 degrees from every lattice axis; use --model first-order",
+                    name_of(model)));
         }
-        notes.push_back(fmt::format("medium.{}: model {} ({}): lattice {} x {} x {} x {}, periods {:g} x {:g} x {:g} m, {:g} s", i,
-                                    name_of(model), why, geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3],
-                                    geometry.period[0], geometry.period[1], geometry.period[2], geometry.period[3]));
+        notes.push_back(
+            fmt::format("medium.{}: model {} ({}): lattice {} x {} x {} x {}, periods {:g} x {:g} x {:g} m, {:g} s", i,
+                        name_of(model), why, geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3],
+                        geometry.period[0], geometry.period[1], geometry.period[2], geometry.period[3]));
         if (settings.far > geometry.period[static_cast<std::size_t>(rays.axis)])
-            warnings.push_back(fmt::format("medium.{}: the path of {:g} m is longer than the lattice period of {:g} m along it, beyond which "
-                                           "the field repeats and displacement is overstated; use form=\"screens\", --far or a longer period",
-                                           i, settings.far, geometry.period[static_cast<std::size_t>(rays.axis)]));
+            warnings.push_back(fmt::format(
+                "medium.{}: the path of {:g} m is longer than the lattice period of {:g} m along it, beyond which "
+                "the field repeats and displacement is overstated; use form=\"screens\", --far or a longer period",
+                i, settings.far, geometry.period[static_cast<std::size_t>(rays.axis)]));
         Layer layer{i, model, LatticeField(spec, geometry), 0, 0};
         layer.step = std::min({geometry.spacing(0), geometry.spacing(1), geometry.spacing(2)});
         if (model != Model::FirstOrder) {
@@ -183,13 +220,16 @@ struct Displacer::Shot {
 
     [[noreturn]] void refuse_model() const {
         std::string have;
-        for (const Layer& l : layers) have += fmt::format("{}medium.{}: {}", have.empty() ? "" : ", ", l.medium, name_of(l.model));
-        throw UserError(fmt::format("--model {}: no medium of this scene suits it ({}); screens goes with form=\"screens\", the others with "
-                                    "form=\"lattice\" (--set medium.0.form=lattice)", name_of(*settings.model), have));
+        for (const Layer& l : layers)
+            have += fmt::format("{}medium.{}: {}", have.empty() ? "" : ", ", l.medium, name_of(l.model));
+        throw UserError(fmt::format(
+            "--model {}: no medium of this scene suits it ({}); screens goes with form=\"screens\", the others with "
+            "form=\"lattice\" (--set medium.0.form=lattice)",
+            name_of(*settings.model), have));
     }
 
-    /// Whether a .chan path ever leaves the reference axes (checked at the footage's own frames would be endless: a path
-    /// that exists is taken to turn).
+    /// Whether a .chan path ever leaves the reference axes (checked at the footage's own frames would be endless: a
+    /// path that exists is taken to turn).
     bool path_turns() const { return path.moving(); }
 
     static double focusing_of(const Layer& layer, double D) {
@@ -210,15 +250,19 @@ struct Displacer::Shot {
         const auto& field = std::get<LatticeField>(layer.field);
         const PathRays rays = nearest_axis(camera, aperture);
         switch (layer.model) {
-            case Model::Table: return slice_instant(field, t, rays, settings.far, layer.constant, strength, layer.padding);
+            case Model::Table:
+                return slice_instant(field, t, rays, settings.far, layer.constant, strength, layer.padding);
             case Model::Tables: {
                 std::vector<double> depths;
                 for (int k = 1; k <= kTables; ++k) depths.push_back(settings.far * k / kTables);
                 return exact_instant(field, t, rays, depths, DepthInterpolation::Linear, strength, layer.padding);
             }
             case Model::Spectral:
-                return exact_instant(field, t, rays, spectral_depths(field, rays, nearest, farthest), DepthInterpolation::Hermite, strength, layer.padding);
-            default: return FirstOrderInstant{LatticeSnapshot(field, t), strength, layer.step, aperture, settings.far};
+                return exact_instant(field, t, rays, spectral_depths(field, rays, nearest, farthest),
+                                     DepthInterpolation::Hermite, strength, layer.padding);
+            default:
+                return FirstOrderInstant{LatticeSnapshot(field, t, first_order_padding(field.geometry())), strength,
+                                         layer.step, aperture, settings.far};
         }
     }
 };
@@ -234,11 +278,14 @@ Band first_order_band(const FirstOrderInstant& model, const Camera& camera, doub
     band.interpolation = DepthInterpolation::Hermite;
     if (farthest > nearest) {
         const double wanted = (farthest - nearest) / (2 * model.step);
-        const int intervals = std::clamp(static_cast<int>(std::ceil(std::min(wanted, 1e6))), 1, kMostFirstOrderDepths - 1);
+        const int intervals =
+            std::clamp(static_cast<int>(std::ceil(std::min(wanted, 1e6))), 1, kMostFirstOrderDepths - 1);
         for (int i = 0; i <= intervals; ++i) {
             // even in the logarithm: near objects need finer layers, their angles being the larger
             const double t = static_cast<double>(i) / intervals;
-            band.depths.push_back(i == 0 ? nearest : i == intervals ? farthest : nearest * portable::pow(farthest / nearest, t));
+            band.depths.push_back(i == 0           ? nearest
+                                  : i == intervals ? farthest
+                                                   : nearest * portable::pow(farthest / nearest, t));
         }
         band.depths.erase(std::unique(band.depths.begin(), band.depths.end()), band.depths.end());
     } else {
@@ -260,18 +307,22 @@ std::vector<Band> bands_of(const LayerInstant& layer, const Camera& camera, doub
 struct Displacer::Instant::State {
     Camera camera;
     std::vector<LayerInstant> layers;
-    std::vector<Band> blank;            ///< bands without nodes
-    std::vector<std::size_t> owner;     ///< index of the layer that fills each band
+    std::vector<Band> blank;         ///< bands without nodes
+    std::vector<std::size_t> owner;  ///< index of the layer that fills each band
 };
 
 Displacer::Instant::Instant(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Displacer::Instant::Instant(Instant&&) noexcept = default;
 Displacer::Instant::~Instant() = default;
-const Camera& Displacer::Instant::camera() const { return state_->camera; }
+const Camera& Displacer::Instant::camera() const {
+    return state_->camera;
+}
 
 namespace {
 
-int tile_of(int pixel, int size) { return pixel >= 0 ? pixel / size : -((-pixel + size - 1) / size); }
+int tile_of(int pixel, int size) {
+    return pixel >= 0 ? pixel / size : -((-pixel + size - 1) / size);
+}
 
 PixelWindow intersection(const PixelWindow& a, const PixelWindow& b) {
     const int x0 = std::max(a.x0, b.x0), y0 = std::max(a.y0, b.y0);
@@ -287,14 +338,16 @@ EIKONAL_CLONES void keep_finite(float* v, std::size_t n) {
 
 }  // namespace
 
-void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, double gain, float* uv) const {
+void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, double gain,
+                             float* uv) const {
     const auto stride = 2 * static_cast<std::size_t>(window.width);
     const auto* plane = std::get_if<const DepthPlane*>(&depth);
     const int first_column = tile_of(window.x0, kTileWidth), first_row = tile_of(window.y0, kTileHeight);
     const int columns = tile_of(window.x0 + window.width - 1, kTileWidth) - first_column + 1;
     const int rows = tile_of(window.y0 + window.height - 1, kTileHeight) - first_row + 1;
     tbb::parallel_for(0, columns * rows, [&](int t) {
-        const PixelWindow tile{(first_column + t % columns) * kTileWidth, (first_row + t / columns) * kTileHeight, kTileWidth, kTileHeight};
+        const PixelWindow tile{(first_column + t % columns) * kTileWidth, (first_row + t / columns) * kTileHeight,
+                               kTileWidth, kTileHeight};
         const PixelWindow part = intersection(tile, window);
         // Nodes on lines depend on where the line begins, and the march's reach on the whole tile; rays do not.
         std::vector<Band> bands = state_->blank;
@@ -303,7 +356,7 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
             const LayerInstant& layer = state_->layers[state_->owner[i]];
             const bool whole = plane != nullptr && meeting == DepthMeeting::March;
             const PixelWindow& wanted = whole ? tile : PixelWindow{tile.x0, part.y0, tile.width, part.height};
-            bands[i].cover(std::holds_alternative<FirstOrderInstant>(layer) && !whole ? part : wanted);
+            bands[i].cover(std::holds_alternative<FirstOrderInstant>(layer) ? part : wanted);
             std::visit([&](const auto& l) { l.fill(bands[i], state_->camera); }, layer);
             bands[i].scale(static_cast<float>(gain));
             if (whole) largest += bands[i].largest_shift();
@@ -313,7 +366,8 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
         if (plane) meet.emplace(**plane, part, meeting, reach);
         BandRows row;
         for (int y = part.y0; y < part.y0 + part.height; ++y) {
-            float* out = uv + static_cast<std::size_t>(y - window.y0) * stride + 2 * static_cast<std::size_t>(part.x0 - window.x0);
+            float* out = uv + static_cast<std::size_t>(y - window.y0) * stride +
+                         2 * static_cast<std::size_t>(part.x0 - window.x0);
             const std::size_t values = 2 * static_cast<std::size_t>(part.width);
             row.start(bands, y);
             if (meet) {
@@ -327,7 +381,8 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
     });
 }
 
-Displacer::Displacer(const Scene& scene, const DisplacerSettings& settings) : shot_(std::make_unique<Shot>(scene, settings)) {}
+Displacer::Displacer(const Scene& scene, const DisplacerSettings& settings)
+    : shot_(std::make_unique<Shot>(scene, settings)) {}
 Displacer::~Displacer() = default;
 Displacer::Displacer(Displacer&&) noexcept = default;
 
@@ -389,13 +444,19 @@ double Displacer::focusing_variance(double D) const {
     return sum;
 }
 
-const std::vector<std::string>& Displacer::notes() const { return shot_->notes; }
-const std::vector<std::string>& Displacer::warnings() const { return shot_->warnings; }
+const std::vector<std::string>& Displacer::notes() const {
+    return shot_->notes;
+}
+const std::vector<std::string>& Displacer::warnings() const {
+    return shot_->warnings;
+}
 std::vector<std::string> Displacer::models() const {
     std::vector<std::string> names;
     for (const Layer& layer : shot_->layers) names.emplace_back(name_of(layer.model));
     return names;
 }
-Camera Displacer::camera(double frame) const { return shot_->path.at(frame); }
+Camera Displacer::camera(double frame) const {
+    return shot_->path.at(frame);
+}
 
 }  // namespace eikonal

@@ -29,12 +29,12 @@ enum class Model { Table, Tables, Spectral, Screens, FirstOrder };
 
 /// What the scene leaves to the footage and the command line.
 struct DisplacerSettings {
-    int width = 0, height = 0;     ///< of the display window
+    int width = 0, height = 0;  ///< of the display window
     double pixel_aspect = 1;
-    double fps = 24;               ///< frame F is at t = (F - first_frame)/fps
-    std::optional<double> fov;     ///< overrides the scene's camera
-    double far = 1000;             ///< greatest axial distance [m] > 0: what lies beyond is displaced as at `far`
-    std::optional<Model> model;    ///< for every medium that it suits; left out: each medium's default
+    double fps = 24;             ///< frame F is at t = (F - first_frame)/fps
+    std::optional<double> fov;   ///< overrides the scene's camera
+    double far = 1000;           ///< greatest axial distance [m] > 0: what lies beyond is displaced as at `far`
+    std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
 };
 
 /// Where each pixel's object is: one axial distance for all [m], or a plane of them.
@@ -52,7 +52,8 @@ class Displacer {
       public:
         /// Displacement of every pixel of `window`, times gain, into `uv`: window.area() interleaved pairs.
         /// Rows in parallel. Finite for every finite depth > 0.
-        void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, double gain, float* uv) const;
+        void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, double gain,
+                 float* uv) const;
 
         const Camera& camera() const;
         Instant(Instant&&) noexcept;

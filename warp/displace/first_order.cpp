@@ -29,13 +29,12 @@ std::vector<dvec2> aperture_points(double aperture, double step) {
 template <class Medium>
 void fill_node(Band& band, const FirstOrderInstant& model, const Medium& medium, const std::vector<dvec2>& disc,
                const Camera& camera, int row, int column) {
-    const StraightRay ray = straight_ray(camera, (band.column0 + column) * band.spacing + 0.5,
-                                         (band.row0 + row) * band.spacing + 0.5);
+    const StraightRay ray =
+        straight_ray(camera, (band.column0 + column) * band.spacing + 0.5, (band.row0 + row) * band.spacing + 0.5);
     const auto force = [&](double w) {
         const dvec3 p = ray.at(w);
         if (disc.size() == 1) return medium.sample(p).gradient;
-        const double radius =
-            0.5 * model.aperture * (band.perspective ? std::max(0.0, 1 - w / model.focus) : 1.0);
+        const double radius = 0.5 * model.aperture * (band.perspective ? std::max(0.0, 1 - w / model.focus) : 1.0);
         dvec3 sum{0, 0, 0};
         for (const dvec2& q : disc) sum += medium.sample(p + radius * (q.x * camera.right + q.y * camera.up)).gradient;
         return sum / static_cast<double>(disc.size());

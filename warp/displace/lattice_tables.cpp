@@ -43,7 +43,9 @@ class LineSampler {
         out.assign(2 * static_cast<std::size_t>(n_), 0.0f);
         for (int i = 0; i < 2; ++i) {
             read(pair[static_cast<std::size_t>(i)]);
-            for (int c = 0; c < n_; ++c) out[2 * static_cast<std::size_t>(c) + static_cast<std::size_t>(i)] = values_[static_cast<std::size_t>(c)];
+            for (int c = 0; c < n_; ++c)
+                out[2 * static_cast<std::size_t>(c) + static_cast<std::size_t>(i)] =
+                    values_[static_cast<std::size_t>(c)];
         }
         if (!potential) return;
         read(*potential);
@@ -52,7 +54,8 @@ class LineSampler {
             const IndexSample g = falloff_at(*model_.falloff, line_.first + static_cast<double>(c) * line_.step);
             for (int i = 0; i < 2; ++i) {
                 float& v = out[2 * static_cast<std::size_t>(c) + static_cast<std::size_t>(i)];
-                v = static_cast<float>(g.n) * v + static_cast<float>(g.gradient[axes[i]]) * values_[static_cast<std::size_t>(c)];
+                v = static_cast<float>(g.n) * v +
+                    static_cast<float>(g.gradient[axes[i]]) * values_[static_cast<std::size_t>(c)];
             }
         }
     }
@@ -82,7 +85,9 @@ PathRays nearest_axis(const Camera& camera, double aperture) {
     return rays;
 }
 
-double axis_alignment(const Camera& camera, const PathRays& rays) { return std::abs(camera.forward[rays.axis]); }
+double axis_alignment(const Camera& camera, const PathRays& rays) {
+    return std::abs(camera.forward[rays.axis]);
+}
 
 std::vector<double> spectral_depths(const LatticeField& field, const PathRays& rays, double nearest, double farthest) {
     if (!(farthest > nearest)) return {nearest};
@@ -96,7 +101,8 @@ std::vector<double> spectral_depths(const LatticeField& field, const PathRays& r
 
 namespace {
 
-TablesInstant blank(const LatticeField& field, const PathRays& rays, DepthInterpolation interpolation, double strength) {
+TablesInstant blank(const LatticeField& field, const PathRays& rays, DepthInterpolation interpolation,
+                    double strength) {
     const auto& g = field.geometry();
     const auto axes = rays.lateral();
     return {{},
@@ -118,8 +124,9 @@ TablesInstant slice_instant(const LatticeField& field, double t, const PathRays&
     return instant;
 }
 
-TablesInstant exact_instant(const LatticeField& field, double t, const PathRays& rays, const std::vector<double>& depths,
-                            DepthInterpolation interpolation, double strength, int padding) {
+TablesInstant exact_instant(const LatticeField& field, double t, const PathRays& rays,
+                            const std::vector<double>& depths, DepthInterpolation interpolation, double strength,
+                            int padding) {
     TablesInstant instant = blank(field, rays, interpolation, strength);
     for (PathTable& table : path_tables(field, t, rays, depths, padding)) {
         TablesInstant::Layer layer{table.u, std::move(table.displacement), std::nullopt, std::move(table.potential),
@@ -152,16 +159,18 @@ void TablesInstant::fill(Band& band, const Camera& camera) const {
             if (layer.slope) sampler.sample(*layer.slope, layer.potential_slope, slope);
             Node* out = band.row(r, k);
             for (std::size_t c = 0; c < n; ++c) {
-                const StraightRay ray = straight_ray(camera, (band.column0 + static_cast<int>(c)) * band.spacing + 0.5, py);
+                const StraightRay ray =
+                    straight_ray(camera, (band.column0 + static_cast<int>(c)) * band.spacing + 0.5, py);
                 const double scale = strength * ray.length * ray.length;
                 const auto shift = [&](const std::vector<float>& v) {
-                    return image_shift(camera, ray,
-                                       scale * (double{v[2 * c]} * unit(axes[0]) + double{v[2 * c + 1]} * unit(axes[1])));
+                    return image_shift(
+                        camera, ray, scale * (double{v[2 * c]} * unit(axes[0]) + double{v[2 * c + 1]} * unit(axes[1])));
                 };
                 const dvec2 x = shift(x1);
                 // linear in u: the slope beyond the last layer is that of x1 ∝ u
                 const dvec2 s = layer.slope ? shift(slope) : x / layer.depth;
-                out[c] += Node{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(s.x), static_cast<float>(s.y)};
+                out[c] += Node{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(s.x),
+                               static_cast<float>(s.y)};
             }
         }
     }

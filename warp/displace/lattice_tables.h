@@ -1,8 +1,11 @@
-/// Models `table`, `tables` and `spectral`: displacement tables of a lattice, for rays along a lattice axis (PHYSICS 6).
+/// Models `table`, `tables` and `spectral`: displacement tables of a lattice, for rays along a lattice axis (PHYSICS
+/// 6).
 ///
-///  - table:    one slice of F times c·u, as the paper renders; c makes its rms right at the far distance, and only there.
+///  - table:    one slice of F times c·u, as the paper renders; c makes its rms right at the far distance, and only
+///  there.
 ///  - tables:   exact tables at kTables path lengths, linearly interpolated in u: the paper's suggestion.
-///  - spectral: exact tables at the depths a frame needs, at most kMostSpectralDepths, Hermite-interpolated with dx1/du.
+///  - spectral: exact tables at the depths a frame needs, at most kMostSpectralDepths, Hermite-interpolated with
+///  dx1/du.
 ///
 /// Orthographic rays start at the pixel's own place. In perspective (table and tables only) each pixel's ray is taken
 /// for one parallel to the axis through the point at kCentroid of its depth, the centroid of the weight 1 - w/D.
@@ -24,9 +27,9 @@ inline constexpr double kCentroid = 1.0 / 3;
 /// Tables of one medium at one instant.
 struct TablesInstant {
     struct Layer {
-        double depth;                                          ///< u [m]
-        std::array<PeriodicSpline2, 2> displacement;           ///< x1 [m] along the lateral axes (or c u F)
-        std::optional<std::array<PeriodicSpline2, 2>> slope;   ///< dx1/du; Hermite only
+        double depth;                                               ///< u [m]
+        std::array<PeriodicSpline2, 2> displacement;                ///< x1 [m] along the lateral axes (or c u F)
+        std::optional<std::array<PeriodicSpline2, 2>> slope;        ///< dx1/du; Hermite only
         std::optional<PeriodicSpline2> potential, potential_slope;  ///< with falloff only
     };
     std::vector<Layer> layers;  ///< ascending depth
@@ -50,11 +53,12 @@ double axis_alignment(const Camera& camera, const PathRays& rays);
 TablesInstant slice_instant(const LatticeField& field, double t, const PathRays& rays, double far, double constant,
                             double strength, int padding);
 /// tables and spectral: exact tables at `depths`.
-TablesInstant exact_instant(const LatticeField& field, double t, const PathRays& rays, const std::vector<double>& depths,
-                            DepthInterpolation interpolation, double strength, int padding);
+TablesInstant exact_instant(const LatticeField& field, double t, const PathRays& rays,
+                            const std::vector<double>& depths, DepthInterpolation interpolation, double strength,
+                            int padding);
 
-/// Depths of `spectral` for objects between nearest and farthest: evenly spaced, a lattice cell apart where that takes no
-/// more than kMostSpectralDepths; one where they are equal.
+/// Depths of `spectral` for objects between nearest and farthest: evenly spaced, a lattice cell apart where that takes
+/// no more than kMostSpectralDepths; one where they are equal.
 std::vector<double> spectral_depths(const LatticeField& field, const PathRays& rays, double nearest, double farthest);
 
 }  // namespace eikonal

@@ -8,7 +8,9 @@ namespace {
 
 using Range = DepthPlane::Range;
 
-int floor_block(int a) { return a >= 0 ? a / DepthPlane::kBlock : -((-a + DepthPlane::kBlock - 1) / DepthPlane::kBlock); }
+int floor_block(int a) {
+    return a >= 0 ? a / DepthPlane::kBlock : -((-a + DepthPlane::kBlock - 1) / DepthPlane::kBlock);
+}
 
 /// Whole pixels, far within an int for any displacement.
 int whole(float v) {
@@ -48,7 +50,9 @@ bool same_pixel(Shift a, Shift b) {
 }
 
 /// Largest component of a - b.
-float motion(Shift a, Shift b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); }
+float motion(Shift a, Shift b) {
+    return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y));
+}
 
 /// The last clear point between clear (z, d) and blocked (behind, e).
 Shift bisect(const Ray& ray, double z, Shift d, double behind, Shift e) {
@@ -106,16 +110,20 @@ Shift fixed_point(const Ray& ray) {
     return d;
 }
 
-Range unite(const Range& a, const Range& b) { return {std::min(a.nearest, b.nearest), std::max(a.farthest, b.farthest)}; }
+Range unite(const Range& a, const Range& b) {
+    return {std::min(a.nearest, b.nearest), std::max(a.farthest, b.farthest)};
+}
 
 }  // namespace
 
-DepthPlane::DepthPlane(const PixelWindow& window, std::vector<float> metres) : window_(window), metres_(std::move(metres)) {
+DepthPlane::DepthPlane(const PixelWindow& window, std::vector<float> metres)
+    : window_(window), metres_(std::move(metres)) {
     block_columns_ = (window.width + kBlock - 1) / kBlock;
     block_rows_ = (window.height + kBlock - 1) / kBlock;
     const auto [low, high] = std::minmax_element(metres_.begin(), metres_.end());
     all_ = {*low, *high};
-    blocks_.assign(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_), {all_.farthest, all_.nearest});
+    blocks_.assign(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_),
+                   {all_.farthest, all_.nearest});
     const float* z = metres_.data();
     for (int y = 0; y < window.height; ++y) {
         Range* row = blocks_.data() + static_cast<std::size_t>(y / kBlock) * static_cast<std::size_t>(block_columns_);
@@ -126,7 +134,8 @@ DepthPlane::DepthPlane(const PixelWindow& window, std::vector<float> metres) : w
 float DepthPlane::at(int x, int y) const {
     const int cx = std::clamp(x - window_.x0, 0, window_.width - 1);
     const int cy = std::clamp(y - window_.y0, 0, window_.height - 1);
-    return metres_[static_cast<std::size_t>(cy) * static_cast<std::size_t>(window_.width) + static_cast<std::size_t>(cx)];
+    return metres_[static_cast<std::size_t>(cy) * static_cast<std::size_t>(window_.width) +
+                   static_cast<std::size_t>(cx)];
 }
 
 std::vector<Range> DepthPlane::around(const PixelWindow& tile, int reach) const {
@@ -149,7 +158,8 @@ std::vector<Range> DepthPlane::around(const PixelWindow& tile, int reach) const 
     for (int by = y0; by <= y1; ++by)
         for (std::size_t bx = 0; bx < columns; ++bx) {
             Range r = lines[static_cast<std::size_t>(by - y0) * columns + bx];
-            for (int j = 1; j <= 2 * blocks; ++j) r = unite(r, lines[static_cast<std::size_t>(by - y0 + j) * columns + bx]);
+            for (int j = 1; j <= 2 * blocks; ++j)
+                r = unite(r, lines[static_cast<std::size_t>(by - y0 + j) * columns + bx]);
             result.push_back(r);
         }
     return result;
@@ -159,22 +169,29 @@ MeetTile::MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeetin
     : depth_(depth), tile_(tile), how_(how) {
     if (how != DepthMeeting::March) return;
     ranges_ = depth.around(tile, reach);
-    range_columns_ = floor_block(tile.x0 + tile.width - 1 - depth.window().x0) - floor_block(tile.x0 - depth.window().x0) + 1;
+    range_columns_ =
+        floor_block(tile.x0 + tile.width - 1 - depth.window().x0) - floor_block(tile.x0 - depth.window().x0) + 1;
 }
 
 void MeetTile::row(BandRows& bands, int y, float* uv) const {
     const PixelWindow& window = depth_.window();
     const int first_column = floor_block(tile_.x0 - window.x0);
-    const auto first = static_cast<std::size_t>((floor_block(y - window.y0) - floor_block(tile_.y0 - window.y0)) * range_columns_);
+    const auto first =
+        static_cast<std::size_t>((floor_block(y - window.y0) - floor_block(tile_.y0 - window.y0)) * range_columns_);
     for (int i = 0; i < tile_.width; ++i) {
         const Ray ray{bands, depth_, tile_.x0 + i, y};
         Shift d;
         switch (how_) {
             case DepthMeeting::March:
-                d = march(ray, ranges_[first + static_cast<std::size_t>(floor_block(ray.x - window.x0) - first_column)]);
+                d = march(ray,
+                          ranges_[first + static_cast<std::size_t>(floor_block(ray.x - window.x0) - first_column)]);
                 break;
-            case DepthMeeting::FixedPoint: d = fixed_point(ray); break;
-            case DepthMeeting::Own: d = ray.at(depth_.at(ray.x, y)); break;
+            case DepthMeeting::FixedPoint:
+                d = fixed_point(ray);
+                break;
+            case DepthMeeting::Own:
+                d = ray.at(depth_.at(ray.x, y));
+                break;
         }
         uv[2 * i] = d.x;
         uv[2 * i + 1] = d.y;

@@ -8,8 +8,8 @@
 ///  - Own: D = the pixel's own depth.
 ///
 /// Depth is read at the pixel nearest to s, never filtered: a depth between foreground and background exists nowhere.
-/// Seen so, every pixel is a facet at its own depth. The march goes from facet to facet: in one leap to the depth of the
-/// one under the ray if the path stays upon it, else no farther than kMarchStep pixels; a point where it is blocked
+/// Seen so, every pixel is a facet at its own depth. The march goes from facet to facet: in one leap to the depth of
+/// the one under the ray if the path stays upon it, else no farther than kMarchStep pixels; a point where it is blocked
 /// between is bisected to kMarchError.
 #pragma once
 
@@ -46,8 +46,8 @@ class DepthPlane {
     float at(int x, int y) const;
     float nearest() const { return all_.nearest; }
     float farthest() const { return all_.farthest; }
-    /// Extrema around each block of kBlock² pixels, counted from the window's origin, that holds a pixel of `tile`: over
-    /// at least the pixels within `reach` of any in the block. Row-major.
+    /// Extrema around each block of kBlock² pixels, counted from the window's origin, that holds a pixel of `tile`:
+    /// over at least the pixels within `reach` of any in the block. Row-major.
     std::vector<Range> around(const PixelWindow& tile, int reach) const;
 
   private:

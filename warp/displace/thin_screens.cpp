@@ -62,8 +62,8 @@ ScreenLine line_on(const ScreensInstant& model, const Place& place, const Camera
     const double scale = band.perspective ? place.middle() : 1.0;
     const dvec2 first = camera.slope(band.column0 * band.spacing + 0.5, py);
     const dvec3 moved = camera.position - model.reference.position;
-    return {glm::dot(moved, model.reference.right) + scale * first.x, glm::dot(moved, model.reference.up) + scale * first.y,
-            scale * band.spacing / camera.f_px};
+    return {glm::dot(moved, model.reference.right) + scale * first.x,
+            glm::dot(moved, model.reference.up) + scale * first.y, scale * band.spacing / camera.f_px};
 }
 
 /// g ∇ψ + ψ ∇g along a row, in place.
@@ -76,7 +76,8 @@ void apply_falloff(const ScreensInstant& model, const ScreenLine& line, const Pl
     float gain = 0, across_x = 0, across_y = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (i == 0 || !level) {
-            const IndexSample g = falloff_at(*model.falloff, first + (static_cast<double>(i) * line.step) * reference.right);
+            const IndexSample g =
+                falloff_at(*model.falloff, first + (static_cast<double>(i) * line.step) * reference.right);
             gain = static_cast<float>(g.n);
             across_x = static_cast<float>(glm::dot(g.gradient, reference.right));
             across_y = static_cast<float>(glm::dot(g.gradient, reference.up));
@@ -128,8 +129,8 @@ class AlignedRows {
         const double py = (band_.row0 + row) * band_.spacing + 0.5;
         if (band_.perspective) {
             const dvec2 s = camera_.slope(band_.column0 * band_.spacing + 0.5, py);
-            slant_factors(static_cast<float>(s.x), static_cast<float>(band_.spacing / camera_.f_px), static_cast<float>(s.y),
-                          static_cast<float>(camera_.f_px), band_.columns, factor_.data());
+            slant_factors(static_cast<float>(s.x), static_cast<float>(band_.spacing / camera_.f_px),
+                          static_cast<float>(s.y), static_cast<float>(camera_.f_px), band_.columns, factor_.data());
         }
         // With a single layer the levers are the samples' weights, and the screens add up before they become nodes.
         const bool single = band_.depths.size() == 1;
@@ -182,8 +183,8 @@ void fill_turned_row(const ScreensInstant& model, Band& band, const Camera& came
     const Camera& reference = model.reference;
     const double advance = advance_of(model, camera);
     for (int c = 0; c < band.columns; ++c) {
-        const StraightRay ray = straight_ray(camera, (band.column0 + c) * band.spacing + 0.5,
-                                             (band.row0 + row) * band.spacing + 0.5);
+        const StraightRay ray =
+            straight_ray(camera, (band.column0 + c) * band.spacing + 0.5, (band.row0 + row) * band.spacing + 0.5);
         const double rate = glm::dot(ray.direction, reference.forward);
         if (rate <= 0) continue;  // a ray at the very edge of a wide view that never meets the screens
         const double start = glm::dot(ray.origin - reference.position, reference.forward);
@@ -205,8 +206,9 @@ void fill_turned_row(const ScreensInstant& model, Band& band, const Camera& came
             const dvec2 kick = image_shift(camera, ray, (model.strength * weight) * bend);
             for (std::size_t k = 0; k < band.depths.size(); ++k) {
                 const SlabLever lever = slab_lever(near, far, band.depths[k]);
-                band.row(row, k)[c] += Node{static_cast<float>(lever.length * kick.x), static_cast<float>(lever.length * kick.y),
-                                            static_cast<float>(lever.slope * kick.x), static_cast<float>(lever.slope * kick.y)};
+                band.row(row, k)[c] +=
+                    Node{static_cast<float>(lever.length * kick.x), static_cast<float>(lever.length * kick.y),
+                         static_cast<float>(lever.slope * kick.x), static_cast<float>(lever.slope * kick.y)};
             }
         }
     }
@@ -216,8 +218,10 @@ void fill_turned_row(const ScreensInstant& model, Band& band, const Camera& came
 
 std::vector<Band> ScreensInstant::bands(const Camera& camera, double nearest, double farthest) const {
     if (glm::dot(camera.forward, reference.forward) < kWidestTurn)
-        throw FrameError("the camera has turned more than 60 degrees from the shot's first view, beyond which thin screens do not hold; "
-                         "use form=\"lattice\" or form=\"gradient-noise\" for this medium");
+        throw FrameError(
+            "the camera has turned more than 60 degrees from the shot's first view, beyond which thin screens do not "
+            "hold; "
+            "use form=\"lattice\" or form=\"gradient-noise\" for this medium");
     std::vector<Band> result;
     for (int spacing = 1; spacing <= kWidestSpacing; spacing *= 2) {
         const std::vector<Active> active = active_screens(*this, camera, farthest, spacing);
@@ -234,7 +238,8 @@ std::vector<Band> ScreensInstant::bands(const Camera& camera, double nearest, do
         band.depths.erase(std::unique(band.depths.begin(), band.depths.end()), band.depths.end());
         // Behind the last slab X is straight.
         const double last = std::max(nearest, active.back().place.far);
-        while (same_axes(camera, reference) && band.depths.size() > 1 && band.depths[band.depths.size() - 2] >= last) band.depths.pop_back();
+        while (same_axes(camera, reference) && band.depths.size() > 1 && band.depths[band.depths.size() - 2] >= last)
+            band.depths.pop_back();
         result.push_back(std::move(band));
     }
     return result;

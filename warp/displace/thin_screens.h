@@ -37,8 +37,8 @@ struct ScreensInstant {
     std::optional<Falloff> falloff;
 
     /// Bands, empty as yet, for the depths nearest … farthest: screens whose pattern allows the same node spacing share
-    /// one, and its layers are the ends of their slabs, between which X is a parabola at most. Screens beyond `farthest`
-    /// are left out.
+    /// one, and its layers are the ends of their slabs, between which X is a parabola at most. Screens beyond
+    /// `farthest` are left out.
     std::vector<Band> bands(const Camera& camera, double nearest, double farthest) const;
 
     /// Sets X and S of the screens that `band` stands for. Its nodes are zero.
