@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "noise/dispatch.h"
 #include "noise/portable_math.h"
 
 namespace eikonal {
@@ -34,20 +36,38 @@ Targets targets(int i, int n, int finer) {
     return {1, {m < 0 ? m + finer : m, 0}, 1.0F};
 }
 
-/// The cubic B-spline's four weights at fraction f of a cell, and their derivatives.
-struct Basis {
-    std::array<double, 4> w, d;
-    std::array<std::size_t, 4> at;
+using Float4 = float __attribute__((vector_size(16)));
 
-    Basis(double x, int n, std::size_t stride) {
+Float4 load(const float* p) {
+    Float4 v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+}
+
+double dot(Float4 a, Float4 b) {
+    const Float4 p = a * b;
+    return (p[0] + p[2]) + (p[1] + p[3]);
+}
+
+/// The cubic B-spline's four weights at fraction f of a cell, and their derivatives a cell. The first tap of cell i stands
+/// at i in coefficients that begin with sample -1.
+struct Basis {
+    Float4 w, d;
+    std::size_t first;
+
+    Basis(double x, int n) {
         const double cells = (x - std::floor(x)) * n;
         const int i = std::min(static_cast<int>(cells), n - 1);
-        const double f = cells - i, g = 1 - f;
-        w = {g * g * g / 6, (4 + f * f * (3 * f - 6)) / 6, (4 + g * g * (3 * g - 6)) / 6, f * f * f / 6};
-        d = {-0.5 * g * g * n, 0.5 * f * (3 * f - 4) * n, -0.5 * g * (3 * g - 4) * n, 0.5 * f * f * n};
-        for (int k = 0; k < 4; ++k) at[k] = static_cast<std::size_t>((i + k - 1 + n) % n) * stride;
+        first = static_cast<std::size_t>(i);
+        const auto f = static_cast<float>(cells - i);
+        const float g = 1 - f;
+        constexpr float sixth = 1.0F / 6;
+        w = Float4{g * g * g * sixth, (4 + f * f * (3 * f - 6)) * sixth, (4 + g * g * (3 * g - 6)) * sixth, f * f * f * sixth};
+        d = Float4{-0.5F * g * g, 0.5F * f * (3 * f - 4), -0.5F * g * (3 * g - 4), 0.5F * f * f};
     }
 };
+
+constexpr int kWrap = 3;  ///< samples -1, n and n + 1 are stored beside a period's own, so that no tap needs a modulo
 
 std::array<int, 3> spatial_size(const LatticeGeometry& g) {
     return {g.size[0], g.size[1], g.size[2]};
@@ -124,37 +144,43 @@ PeriodicSpline3::PeriodicSpline3(FftVector<complex32> spectrum, const std::array
         }
     });
     const FftPlan plan(FftPlan::Kind::ComplexToReal, size_);
-    coefficients_.resize(plan.sample_size());
-    plan.execute(spectrum.data(), coefficients_.data());
-    const auto [least, most] = std::minmax_element(coefficients_.begin(), coefficients_.end());
+    FftScratch<float> samples(plan.sample_size());
+    plan.execute(spectrum.data(), samples.data());
+    const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
     lower_ = *least;
     upper_ = *most;
+    const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]), nz = static_cast<std::size_t>(size_[2]);
+    coefficients_.resize((nx + kWrap) * (ny + kWrap) * (nz + kWrap));
+    tbb::parallel_for(std::size_t{0}, nx + kWrap, [&](std::size_t i) {
+        for (std::size_t j = 0; j < ny + kWrap; ++j) {
+            const float* from = samples.data() + (((i + nx - 1) % nx) * ny + (j + ny - 1) % ny) * nz;
+            float* to = coefficients_.data() + (i * (ny + kWrap) + j) * (nz + kWrap);
+            to[0] = from[nz - 1];
+            std::copy_n(from, nz, to + 1);
+            to[nz + 1] = from[0];
+            to[nz + 2] = from[1 % nz];
+        }
+    });
 }
 
-PeriodicSpline3::Sample PeriodicSpline3::sample(const dvec3& x) const {
-    const auto nz = static_cast<std::size_t>(size_[2]);
-    const Basis bx(x.x, size_[0], static_cast<std::size_t>(size_[1]) * nz), by(x.y, size_[1], nz), bz(x.z, size_[2], 1);
-    Sample out{0, {0, 0, 0}};
-    for (int i = 0; i < 4; ++i) {
-        double value = 0, slope_y = 0, slope_z = 0;
-        for (int j = 0; j < 4; ++j) {
-            const float* row = coefficients_.data() + bx.at[i] + by.at[j];
-            double v = 0, s = 0;
-            for (int k = 0; k < 4; ++k) {
-                const double c = row[bz.at[k]];
-                v += bz.w[k] * c;
-                s += bz.d[k] * c;
-            }
-            value += by.w[j] * v;
-            slope_y += by.d[j] * v;
-            slope_z += by.w[j] * s;
+EIKONAL_CLONES PeriodicSpline3::Sample PeriodicSpline3::sample(const dvec3& x) const {
+    const Basis bx(x.x, size_[0]), by(x.y, size_[1]), bz(x.z, size_[2]);
+    const std::size_t row = static_cast<std::size_t>(size_[2]) + kWrap, plane = (static_cast<std::size_t>(size_[1]) + kWrap) * row;
+    const float* corner = coefficients_.data() + bx.first * plane + by.first * row + bz.first;
+    Float4 value{}, slope_x{}, slope_y{};  // still to be weighed along z
+    for (std::size_t i = 0; i < 4; ++i, corner += plane) {
+        Float4 v{}, s{};
+        for (std::size_t j = 0; j < 4; ++j) {
+            const Float4 c = load(corner + j * row);
+            v += by.w[j] * c;
+            s += by.d[j] * c;
         }
-        out.value += bx.w[i] * value;
-        out.gradient.x += bx.d[i] * value;
-        out.gradient.y += bx.w[i] * slope_y;
-        out.gradient.z += bx.w[i] * slope_z;
+        value += bx.w[i] * v;
+        slope_x += bx.d[i] * v;
+        slope_y += bx.w[i] * s;
     }
-    return out;
+    return {dot(value, bz.w),
+            {size_[0] * dot(slope_x, bz.w), size_[1] * dot(slope_y, bz.w), size_[2] * dot(value, bz.d)}};
 }
 
 IndexSample falloff_at(const Falloff& falloff, const dvec3& x) {

@@ -27,7 +27,8 @@ namespace eikonal {
 FftVector<complex32> pad_spectrum(const FftVector<complex32>& spectrum, const std::array<int, 3>& size,
                                   const std::array<int, 3>& finer);
 
-/// Periodic cubic B-spline in three dimensions with period 1 along each axis. Immutable, thread-safe.
+/// Periodic cubic B-spline in three dimensions with period 1 along each axis. Positions are double; what follows from the
+/// fraction of a cell is single precision (rounding 1e-6 of the largest value). Immutable, thread-safe.
 class PeriodicSpline3 {
   public:
     /// spectrum: half-complex, size[0] × size[1] × (size[2]/2 + 1), Hermitian; the spline passes through its

@@ -85,16 +85,36 @@ struct GradientCell {
     Float4 high;  ///< a2, b2, 0, b3
 };
 
+/// Rows to columns.
+void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
+    const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Float4 cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+    b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+    c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+    d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+constexpr int kCellsAtOnce = 4;
+int whole_cells(int cells) { return (cells + kCellsAtOnce - 1) / kCellsAtOnce * kCellsAtOnce; }
+
+/// value, slope: at least whole_cells(cells) + 3 readable; out: whole_cells(cells).
 EIKONAL_CLONES void gradient_cells(const float* value, const float* slope, int cells, float scale_x, float scale_y,
                                    GradientCell* out) {
-    for (int i = 0; i < cells; ++i) {
-        const float a0 = value[i], a1 = value[i + 1], a2 = value[i + 2], a3 = value[i + 3];
-        const float b0 = slope[i], b1 = slope[i + 1], b2 = slope[i + 2], b3 = slope[i + 3];
-        constexpr float sixth = 1.0F / 6;
-        out[i].low = Float4{scale_x * (0.5F * (a2 - a0)), scale_y * (sixth * (b0 + 4 * b1 + b2)),
-                            scale_x * ((a0 - a1) + (a2 - a1)), scale_y * (0.5F * (b2 - b0))};
-        out[i].high = Float4{scale_x * (0.5F * ((a3 - a0) + 3 * (a1 - a2))), scale_y * (0.5F * ((b0 - b1) + (b2 - b1))), 0,
-                             scale_y * (sixth * ((b3 - b0) + 3 * (b1 - b2)))};
+    constexpr float sixth = 1.0F / 6;
+    for (int i = 0; i < cells; i += kCellsAtOnce) {
+        const Float4 v0 = load(value + i), v1 = load(value + i + 1), v2 = load(value + i + 2), v3 = load(value + i + 3);
+        const Float4 s0 = load(slope + i), s1 = load(slope + i + 1), s2 = load(slope + i + 2), s3 = load(slope + i + 3);
+        Float4 a0 = scale_x * (0.5F * (v2 - v0)), a1 = scale_x * ((v0 - v1) + (v2 - v1));
+        Float4 a2 = scale_x * (0.5F * ((v3 - v0) + 3 * (v1 - v2))), none{};
+        Float4 b0 = scale_y * (sixth * (s0 + 4 * s1 + s2)), b1 = scale_y * (0.5F * (s2 - s0));
+        Float4 b2 = scale_y * (0.5F * ((s0 - s1) + (s2 - s1))), b3 = scale_y * (sixth * ((s3 - s0) + 3 * (s1 - s2)));
+        transpose(a0, b0, a1, b1);
+        transpose(a2, b2, none, b3);
+        out[i] = {a0, a2};
+        out[i + 1] = {b0, b2};
+        out[i + 2] = {a1, none};
+        out[i + 3] = {b1, b3};
     }
 }
 
@@ -254,27 +274,27 @@ PeriodicSpline2::Columns PeriodicSpline2::columns(double x0, double step_x, int 
     return result;
 }
 
-FftScratch<float> PeriodicSpline2::collapsed(const Columns& columns, double y) const {
+FftVector<float> PeriodicSpline2::collapsed(const Columns& columns, double y) const {
     const double v = wrap(std::fmod(y, ny_ / per_y_) * per_y_, ny_);
     const auto cell = static_cast<std::int32_t>(v);
-    const int n = columns.count + 3;
-    FftScratch<float> row(2 * static_cast<std::size_t>(n));
+    const int n = columns.count + 3, room = whole_cells(columns.count) + 3;
+    FftVector<float> row(2 * static_cast<std::size_t>(room));
     collapse_row(coefficients_.data() + static_cast<std::ptrdiff_t>(cell) * stride_ + columns.first, stride_, n,
-                 static_cast<float>(v - cell), row.data(), row.data() + n);
+                 static_cast<float>(v - cell), row.data(), row.data() + room);
     return row;
 }
 
 void PeriodicSpline2::add_row_gradients(const Columns& columns, double y, float weight, float* uv) const {
     if (coefficients_.empty() || columns.count == 0) return;
-    const FftScratch<float> row = collapsed(columns, y);
-    FftScratch<GradientCell> cells(static_cast<std::size_t>(columns.count));
-    gradient_cells(row.data(), row.data() + columns.count + 3, columns.count, weight * static_cast<float>(per_x_), weight * static_cast<float>(per_y_), cells.data());
+    const FftVector<float> row = collapsed(columns, y);
+    FftScratch<GradientCell> cells(static_cast<std::size_t>(whole_cells(columns.count)));
+    gradient_cells(row.data(), row.data() + row.size() / 2, columns.count, weight * static_cast<float>(per_x_), weight * static_cast<float>(per_y_), cells.data());
     gradients_on_row(cells.data(), columns.cell.data(), columns.t.data(), static_cast<int>(columns.cell.size()), uv);
 }
 
 void PeriodicSpline2::add_row_values(const Columns& columns, double y, float weight, float* values) const {
     if (coefficients_.empty() || columns.count == 0) return;
-    const FftScratch<float> row = collapsed(columns, y);
+    const FftVector<float> row = collapsed(columns, y);
     FftScratch<Float4> cells(static_cast<std::size_t>(columns.count));
     value_cells(row.data(), columns.count, weight, cells.data());
     values_on_row(cells.data(), columns.cell.data(), columns.t.data(), static_cast<int>(columns.cell.size()), values);

@@ -73,7 +73,7 @@ class PeriodicSpline2 {
   private:
     struct Line;
     /// The taps along y collapsed at one y: the value for each coefficient along x, then ∂/∂v.
-    FftScratch<float> collapsed(const Columns& columns, double y) const;
+    FftVector<float> collapsed(const Columns& columns, double y) const;
     Line line(double x0, double y0, double step_x, double step_y) const;
 
     int nx_ = 0, ny_ = 0, stride_ = 0;

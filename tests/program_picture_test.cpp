@@ -187,10 +187,12 @@ TEST_F(PictureTest, MapsFollowTheContract) {
         }
 }
 
-// OpenImageIO knows both of our interpolating filters by name; its STMap has t upwards, hence flip_t.
+// OpenImageIO knows both of our interpolating filters by name; its t points down, hence flip_t. The contrast is low,
+// where our limit on the rings of highlights (resample.h) does not act.
 TEST_F(PictureTest, OiiotoolMakesOurPictureOfOurStMap) {
     constexpr float kTolerance = 1e-5f;
-    paint("in.exr", ImageSpec(kWidth, kHeight, 3, TypeDesc::FLOAT), code);
+    paint("in.exr", ImageSpec(kWidth, kHeight, 3, TypeDesc::FLOAT),
+          [](int x, int y, int c) { return 0.5f + 0.2f * code(x, y, c); });
     for (const auto& [our, their] : {std::pair{"cubic", "catmull-rom"}, {"bilinear", "triangle"}}) {
         warp("in.exr", "out.exr", {"--rms", "1", "--stmap", "st.exr", "--filter", our});
         silent(tool({"oiiotool", "in.exr", "st.exr", std::string("--st_warp:flip_t=1:filter=") + their, "-d", "float",
@@ -204,7 +206,7 @@ TEST_F(PictureTest, OiiotoolMakesOurPictureOfOurStMap) {
                     moved = std::max(moved, std::abs(double{ours.at(x, y, c)} - in.at(x, y, c)));
                 }
         EXPECT_LT(largest, kTolerance) << our;
-        EXPECT_GT(moved, 0.1);
+        EXPECT_GT(moved, 0.05);
     }
 }
 

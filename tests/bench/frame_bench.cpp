@@ -13,12 +13,12 @@ using namespace eikonal;
 
 constexpr int kSize = 512;
 
-/// A lattice of 64³ x 32 seen by parallel rays, or the default screens in perspective.
+/// The paper's lattice of 32⁴ seen by parallel rays, or the default screens in perspective.
 Scene scene_of(const std::string& form) {
     const std::string turbulence = "[[medium]]\ntype = \"turbulence\"\ncn2 = 1e-12\n";
     if (form == "screens")
         return parse_scene(turbulence + "form = \"screens\"\nouter_scale = 2\ninner_scale = 0.05\n[camera]\nhorizontal_fov = 4\n", "bench");
-    return parse_scene(turbulence + "form = \"lattice\"\nouter_scale = 1\ninner_scale = 0.1\nlattice = [64, 64, 64, 32]\nperiod = [4, 4, 4, 4]\n"
+    return parse_scene(turbulence + "form = \"lattice\"\nouter_scale = 1\ninner_scale = 0.3\nlattice = [32, 32, 32, 32]\nperiod = [4, 4, 4, 4]\n"
                                     "[camera]\nprojection = \"orthographic\"\nwidth = 4\n",
                        "bench");
 }

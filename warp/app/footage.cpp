@@ -26,7 +26,8 @@ void describe_picture(const std::filesystem::path& file, Footage& footage) {
     footage.source_bits = bits_of(part);
     footage.channels = 0;
     for (const Part& each : header.parts) footage.channels += each.spec.nchannels;
-    footage.has_alpha = std::any_of(part.kinds.begin(), part.kinds.end(), [](ChannelKind k) { return k == ChannelKind::Alpha; });
+    footage.has_alpha =
+        std::any_of(part.kinds.begin(), part.kinds.end(), [](ChannelKind k) { return k == ChannelKind::Alpha; });
     if (const auto* rate = part.spec.find_attribute("FramesPerSecond", OIIO::TypeRational)) {
         const int* r = static_cast<const int*>(rate->data());
         if (r[0] > 0 && r[1] > 0) footage.fps = Rational{r[0], r[1]};
@@ -48,11 +49,13 @@ void describe_movie(const std::filesystem::path& file, Footage& footage) {
         std::iota(footage.frames.begin(), footage.frames.end(), 1);
     }
     if (reader.interlaced())
-        footage.notes.push_back(fmt::format("'{}' is interlaced: its rows belong to two instants; deinterlace it first (ffmpeg -vf yadif)",
-                                            file.string()));
+        footage.notes.push_back(
+            fmt::format("'{}' is interlaced: its rows belong to two instants; deinterlace it first (ffmpeg -vf yadif)",
+                        file.string()));
     if (reader.rotation() != 0)
-        footage.notes.push_back(fmt::format("'{}' is stored turned by {} degrees; the air moves in the picture as stored", file.string(),
-                                            reader.rotation()));
+        footage.notes.push_back(
+            fmt::format("'{}' is stored turned by {} degrees; the air moves in the picture as stored", file.string(),
+                        reader.rotation()));
 }
 
 }  // namespace
@@ -69,7 +72,8 @@ Footage find_footage(const std::filesystem::path& path, const std::vector<int>& 
     if (path.empty()) throw UserError("INPUT: '' is no file name");
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
-        throw UserError(fmt::format("'{}' is a folder; name the files in it, e.g. '{}'", path.string(), (path / "plate.####.exr").string()));
+        throw UserError(fmt::format("'{}' is a folder; name the files in it, e.g. '{}'", path.string(),
+                                    (path / "plate.####.exr").string()));
     if (footage.kind == FootageKind::Movie) {
         describe_movie(path, footage);
         return footage;
@@ -79,8 +83,7 @@ Footage find_footage(const std::filesystem::path& path, const std::vector<int>& 
         return footage;
     }
     footage.frames = footage.files.find_frames();
-    if (footage.frames.empty())
-        throw FrameError(fmt::format("no file matches '{}'", path.string()));
+    if (footage.frames.empty()) throw FrameError(fmt::format("no file matches '{}'", path.string()));
     // a damaged first frame must not hide the others
     const std::vector<int>& frames = wanted.empty() ? footage.frames : wanted;
     for (std::size_t i = 0;; ++i) {
@@ -107,7 +110,8 @@ std::vector<int> missing_frames(const std::vector<int>& frames) {
 std::string frame_list(const std::vector<int>& frames) {
     constexpr std::size_t kShown = 6;
     std::string text;
-    for (std::size_t i = 0; i < std::min(frames.size(), kShown); ++i) text += fmt::format("{}{}", i == 0 ? "" : ", ", frames[i]);
+    for (std::size_t i = 0; i < std::min(frames.size(), kShown); ++i)
+        text += fmt::format("{}{}", i == 0 ? "" : ", ", frames[i]);
     if (frames.size() > kShown) text += fmt::format(" … ({} in all)", frames.size());
     return text;
 }

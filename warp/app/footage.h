@@ -21,19 +21,19 @@ FootageKind footage_kind(const std::filesystem::path& path);
 /// Footage that exists: its kind, frames and first picture's properties.
 struct Footage {
     FootageKind kind = FootageKind::Still;
-    FilePattern files;             ///< of a still or a sequence
-    std::vector<int> frames;       ///< ascending; empty for a still, and for a movie whose length its container hides
-    PixelWindow display;           ///< of the first readable frame among those wanted
+    FilePattern files;        ///< of a still or a sequence
+    std::vector<int> frames;  ///< ascending; empty for a still, and for a movie whose length its container hides
+    PixelWindow display;      ///< of the first readable frame among those wanted
     double pixel_aspect = 1;
-    std::optional<Rational> fps;   ///< as stored
-    int source_bits = 8;           ///< of a colour channel: 8 … 16 integer, 16 half, 32 float
-    int channels = 4;              ///< of all parts
+    std::optional<Rational> fps;  ///< as stored
+    int source_bits = 8;          ///< of a colour channel: 8 … 16 integer, 16 half, 32 float
+    int channels = 4;             ///< of all parts
     bool has_alpha = false;
     std::vector<std::string> notes;  ///< what the user should know (rotation, interlace)
 };
 
-/// Looks at the files. `wanted`: the frames that will be read; empty: all there are. FrameError: none found, unreadable.
-/// UserError: a folder, an empty name.
+/// Looks at the files. `wanted`: the frames that will be read; empty: all there are. FrameError: none found,
+/// unreadable. UserError: a folder, an empty name.
 Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted);
 
 /// A sequence's numbers that are missing between its first and last, given its usual step.

@@ -57,12 +57,17 @@ std::string HelpFormat::make_help(const CLI::App* app, std::string, CLI::AppForm
     const auto commands = app->get_subcommands([](const CLI::App*) { return true; });
     for (const CLI::Option* option : app->get_options()) {
         if (!option->get_required()) continue;
-        usage += option->get_positional() ? " " + option->get_name(true) : fmt::format(" -{} {}", option->get_snames().front(), option->get_type_name());
+        usage += option->get_positional()
+                     ? " " + option->get_name(true)
+                     : fmt::format(" -{} {}", option->get_snames().front(), option->get_type_name());
     }
-    const std::string called = app->get_parent() == nullptr ? app->get_name() : app->get_parent()->get_name() + " " + app->get_name();
-    std::string text = app->get_description() + fmt::format("\n\nUsage: {}{}{} [options]\n", called, usage, commands.empty() ? "" : " COMMAND");
+    const std::string called =
+        app->get_parent() == nullptr ? app->get_name() : app->get_parent()->get_name() + " " + app->get_name();
+    std::string text = app->get_description() +
+                       fmt::format("\n\nUsage: {}{}{} [options]\n", called, usage, commands.empty() ? "" : " COMMAND");
     if (!commands.empty()) text += "\nCommands:\n";
-    for (const CLI::App* command : commands) text += entry(command->get_name(), command->get_description().substr(0, command->get_description().find('\n')));
+    for (const CLI::App* command : commands)
+        text += entry(command->get_name(), command->get_description().substr(0, command->get_description().find('\n')));
     std::vector<std::string> groups = app->get_groups();
     std::rotate(groups.begin(), std::find(groups.begin(), groups.end(), "Files"), groups.end());  // --help goes last
     for (const std::string& group : groups) {

@@ -1,7 +1,7 @@
 #include "warp/app/interrupt.h"
 
-#include <atomic>
 #include <unistd.h>
+#include <atomic>
 
 #include <csignal>
 #include <string_view>
@@ -28,6 +28,8 @@ void catch_interrupts() {
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
-bool interrupted() { return flag; }
+bool interrupted() {
+    return flag;
+}
 
 }  // namespace eikonal

@@ -67,7 +67,8 @@ std::string joined(const Names<T>& names) {
     return text;
 }
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& valid, const std::string& otherwise = "") {
+std::string suggestion(std::string_view word, const std::vector<std::string>& valid,
+                       const std::string& otherwise = "") {
     const std::vector<std::string_view> views(valid.begin(), valid.end());
     const std::string_view near = scene_file::nearest(word, views);
     return near.empty() ? otherwise : fmt::format("; did you mean '{}'?", near);
@@ -75,7 +76,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& va
 
 /// An option whose value is one of a list of names.
 template <class Target, class T>
-void add_choice(CLI::App& app, const std::string& flag, Target& target, const Names<T>& names, const std::string& help) {
+void add_choice(CLI::App& app, const std::string& flag, Target& target, const Names<T>& names,
+                const std::string& help) {
     app.add_option_function<std::string>(
            flag,
            [flag, &target, &names](const std::string& text) {
@@ -87,7 +89,8 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target, const Na
                    }
                    valid.push_back(name);
                }
-               throw UserError(fmt::format("{}: '{}' is none of {}{}", flag, text, joined(names), suggestion(text, valid)));
+               throw UserError(
+                   fmt::format("{}: '{}' is none of {}{}", flag, text, joined(names), suggestion(text, valid)));
            },
            help)
         ->type_name(joined(names));
@@ -103,8 +106,8 @@ double number(const std::string& option, std::string_view text) {
 
 /// A number with a range; `allowed` says it in words.
 template <class Target>
-void add_number(CLI::App& app, const std::string& flag, Target& target, const std::string& type, const std::string& help,
-                const std::string& allowed, bool (*valid)(double)) {
+void add_number(CLI::App& app, const std::string& flag, Target& target, const std::string& type,
+                const std::string& help, const std::string& allowed, bool (*valid)(double)) {
     app.add_option_function<std::string>(
            flag,
            [flag, &target, allowed, valid](const std::string& text) {
@@ -116,18 +119,26 @@ void add_number(CLI::App& app, const std::string& flag, Target& target, const st
         ->type_name(type);
 }
 
-bool positive(double v) { return v > 0; }
-bool not_negative(double v) { return v >= 0; }
+bool positive(double v) {
+    return v > 0;
+}
+bool not_negative(double v) {
+    return v >= 0;
+}
 
 std::array<double, 2> pair_of(const std::string& option, const std::string& text) {
     const auto comma = text.find(',');
-    if (comma == std::string::npos) throw UserError(fmt::format("{}: '{}' must be two numbers, NEAR,FAR", option, text));
-    return {number(option, std::string_view(text).substr(0, comma)), number(option, std::string_view(text).substr(comma + 1))};
+    if (comma == std::string::npos)
+        throw UserError(fmt::format("{}: '{}' must be two numbers, NEAR,FAR", option, text));
+    return {number(option, std::string_view(text).substr(0, comma)),
+            number(option, std::string_view(text).substr(comma + 1))};
 }
 
 void add_scene(CLI::App& app, SceneOptions& o) {
-    auto* scene = app.add_option("--scene", o.scene, "scene file (TOML): media, camera, time, optics")->type_name("FILE");
-    auto* preset = app.add_option("--preset", o.preset, "a scene that comes with eikonal (default: gentle)")->type_name("NAME");
+    auto* scene =
+        app.add_option("--scene", o.scene, "scene file (TOML): media, camera, time, optics")->type_name("FILE");
+    auto* preset =
+        app.add_option("--preset", o.preset, "a scene that comes with eikonal (default: gentle)")->type_name("NAME");
     scene->excludes(preset);
     app.add_option("--set", o.settings, "change a key of the scene, e.g. medium.0.cn2=1e-13 (repeatable)")
         ->type_name("KEY=VALUE")
@@ -144,16 +155,15 @@ void add_scene(CLI::App& app, SceneOptions& o) {
            },
            "another turbulence of the same kind")
         ->type_name("N");
-    add_number(app, "--fov", o.fov, "DEG", "horizontal field of view, instead of the scene's", "between 0 and 180 degrees",
-               [](double v) { return v > 0 && v < 180; });
+    add_number(app, "--fov", o.fov, "DEG", "horizontal field of view, instead of the scene's",
+               "between 0 and 180 degrees", [](double v) { return v > 0 && v < 180; });
     for (const char* name : {"--scene", "--preset", "--set", "--seed", "--fov"}) app.get_option(name)->group("Scene");
 }
 
 void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
     const std::string group = "Depth";
     add_number(app, "--distance", o.distance, "M", "constant distance along the axis [m]", "more than 0", positive);
-    app.add_option("--depth", o.depth,
-                   with_input ? "depth map; :CHANNEL alone names a channel of INPUT" : "depth map")
+    app.add_option("--depth", o.depth, with_input ? "depth map; :CHANNEL alone names a channel of INPUT" : "depth map")
         ->type_name("FILE[:CHANNEL]");
     add_choice(app, "--depth-type", o.type, kDepthTypes, "metres along the axis (default), along the ray, or 1/metres");
     app.add_option_function<std::string>(
@@ -163,21 +173,25 @@ void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
     app.add_option("--ground", o.ground,
                    "flat ground: camera height [m] and the horizon's row from the top, in pixels or as 55%")
         ->type_name("HEIGHT,HORIZON");
-    add_number(app, "--far", o.far, "M", "distance of the background (default: the scene's, else 1000)", "more than 0", positive);
+    add_number(app, "--far", o.far, "M", "distance of the background (default: the scene's, else 1000)", "more than 0",
+               positive);
     add_choice(app, "--depth-meeting", o.meeting, kMeetings,
-               "how a bent ray meets the depth map: followed to the first surface (default), iterated, or the pixel's own depth");
-    for (const char* name : {"--distance", "--depth", "--depth-type", "--depth-range", "--ground", "--far", "--depth-meeting"})
+               "how a bent ray meets the depth map: followed to the first surface (default), iterated, or the pixel's "
+               "own depth");
+    for (const char* name :
+         {"--distance", "--depth", "--depth-type", "--depth-range", "--ground", "--far", "--depth-meeting"})
         app.get_option(name)->group(group);
 }
 
 void add_strength(CLI::App& app, StrengthOptions& o) {
     app.add_option("--mask", o.mask, "matte that scales the displacement, 0 … 1")->type_name("FILE[:CHANNEL]");
-    add_number(app, "--rms", o.rms, "PX", "scale the displacement to this rms at --far, fixed over the shot", "0 or more",
-               not_negative);
+    add_number(app, "--rms", o.rms, "PX", "scale the displacement to this rms at --far, fixed over the shot",
+               "0 or more", not_negative);
     add_number(app, "--gain", o.gain, "X", "multiply the displacement", "0 or more", not_negative);
     add_choice(app, "--model", o.model, kModels, "how displacement is computed (default: what suits each medium)");
     app.add_option("--stmap", o.stmap, "also write the map as STMap (Nuke, Blender)")->type_name("FILE");
-    for (const char* name : {"--mask", "--rms", "--gain", "--model", "--stmap"}) app.get_option(name)->group("Displacement");
+    for (const char* name : {"--mask", "--rms", "--gain", "--model", "--stmap"})
+        app.get_option(name)->group("Displacement");
 }
 
 void add_run(CLI::App& app, RunOptions& o) {
@@ -204,11 +218,16 @@ void add_run(CLI::App& app, RunOptions& o) {
 
 void add_warp(CLI::App& app, WarpOptions& o) {
     app.add_option("INPUT", o.input, "image, sequence or movie")->required()->group("Files");
-    app.add_option("-o,--output", o.output, "image, sequence or movie")->required()->type_name("OUTPUT")->group("Files");
+    app.add_option("-o,--output", o.output, "image, sequence or movie")
+        ->required()
+        ->type_name("OUTPUT")
+        ->group("Files");
     add_scene(app, o.scene);
     add_depth(app, o.depth, true);
     add_strength(app, o.strength);
-    app.add_option("--displacement", o.displacement, "also write the map as channels u, v in pixels")->type_name("FILE")->group("Displacement");
+    app.add_option("--displacement", o.displacement, "also write the map as channels u, v in pixels")
+        ->type_name("FILE")
+        ->group("Displacement");
     add_choice(app, "--filter", o.filter, kFilters, "reconstruction (default cubic)");
     add_choice(app, "--edge", o.edge, kEdges, "what lies outside the picture (default mirror)");
     add_number(app, "--shutter", o.shutter, "FRACTION", "motion blur: part of the frame time that the shutter is open",
@@ -223,7 +242,8 @@ void add_warp(CLI::App& app, WarpOptions& o) {
            },
            "instants within the shutter (default 8 with --shutter)")
         ->type_name("N");
-    add_number(app, "--dispersion", o.dispersion, "X", "colour fringes: 0 off (default), 1 true air", "0 or more", not_negative);
+    add_number(app, "--dispersion", o.dispersion, "X", "colour fringes: 0 off (default), 1 true air", "0 or more",
+               not_negative);
     app.add_option("--codec", o.codec, "of a movie (default: the input's, else h264)")->type_name("NAME");
     add_number(app, "--quality", o.quality, "CRF", "of a movie, lower is better", "0 or more", not_negative);
     for (const char* name : {"--filter", "--edge", "--shutter", "--samples", "--dispersion", "--codec", "--quality"})
@@ -232,7 +252,10 @@ void add_warp(CLI::App& app, WarpOptions& o) {
 }
 
 void add_map(CLI::App& app, MapOptions& o) {
-    app.add_option("-o,--output", o.output, "displacement map (EXR, channels u and v in pixels)")->required()->type_name("OUTPUT")->group("Files");
+    app.add_option("-o,--output", o.output, "displacement map (EXR, channels u and v in pixels)")
+        ->required()
+        ->type_name("OUTPUT")
+        ->group("Files");
     add_scene(app, o.scene);
     add_depth(app, o.depth, false);
     add_strength(app, o.strength);
@@ -270,7 +293,8 @@ void add_field(CLI::App& app, FieldOptions& o) {
     for (const CLI::Option* option : at->get_options())
         for (const auto& name : option->get_lnames()) valid.push_back("--" + name);
     std::vector<std::string> commands;
-    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) commands.push_back(sub->get_name());
+    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+        commands.push_back(sub->get_name());
     if (at == &app && (words.empty() || words.front().rfind('-', 0) != 0)) {
         if (words.empty()) throw UserError(fmt::format("no command given; one of {}", fmt::join(commands, ", ")));
         throw UserError(fmt::format("'{}' is no command; one of {}{}", words.front(), fmt::join(commands, ", "),
@@ -280,20 +304,23 @@ void add_field(CLI::App& app, FieldOptions& o) {
         for (const std::string& word : at->remaining(true)) {
             const std::string name = word.substr(0, word.find('='));
             if (name.rfind("--", 0) == 0)
-                throw UserError(fmt::format("{}: '{}' has no such option{}", name, at->get_name(), suggestion(name, valid, "; see --help")));
+                throw UserError(fmt::format("{}: '{}' has no such option{}", name, at->get_name(),
+                                            suggestion(name, valid, "; see --help")));
             throw UserError(fmt::format("'{}': too many arguments for '{}'; see --help", word, at->get_name()));
         }
     std::string text = error.what();
     std::replace(text.begin(), text.end(), '\n', ' ');
-    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) text = text.substr(0, text.find(':')) + ": its value is missing";
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+        text = text.substr(0, text.find(':')) + ": its value is missing";
     throw UserError(fmt::format("{}; see 'eikonal {} --help'", text, at == &app ? "" : at->get_name()));
 }
 
 void check(DepthArguments& o) {
     int sources = 0;
     std::string given;
-    for (const auto& [name, is] : {std::pair{"--distance", o.distance.has_value()}, std::pair{"--depth", o.depth.has_value()},
-                                   std::pair{"--ground", o.ground.has_value()}})
+    for (const auto& [name, is] :
+         {std::pair{"--distance", o.distance.has_value()}, std::pair{"--depth", o.depth.has_value()},
+          std::pair{"--ground", o.ground.has_value()}})
         if (is) {
             ++sources;
             given += fmt::format("{}{}", given.empty() ? "" : " and ", name);
@@ -340,7 +367,8 @@ Command parse_options(int argc, const char* const* argv) {
     if (app.got_subcommand("warp")) {
         check(warp.depth);
         if (warp.shutter > 0 && warp_command->count("--samples") == 0) warp.samples = 8;
-        if (warp.shutter == 0 && warp.samples > 1) throw UserError("--samples: has no meaning without --shutter; give --shutter 0.5");
+        if (warp.shutter == 0 && warp.samples > 1)
+            throw UserError("--samples: has no meaning without --shutter; give --shutter 0.5");
         return warp;
     }
     if (app.got_subcommand("map")) {

@@ -29,17 +29,20 @@ std::string numbered(const fs::path& path, const std::string& extension) {
 void check_format(const std::string& option, const fs::path& path, OutputKind kind) {
     if (kind == OutputKind::Report) return;
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
     if (kind == OutputKind::Maps) {
         if (is_movie(path))
-            throw UserError(fmt::format("{}: '{}' is a movie, which cannot hold float maps; write a sequence like '{}'", option,
-                                        path.string(), numbered(path, ".exr")));
+            throw UserError(fmt::format("{}: '{}' is a movie, which cannot hold float maps; write a sequence like '{}'",
+                                        option, path.string(), numbered(path, ".exr")));
         if (extension != ".exr")
-            throw UserError(fmt::format("{}: '{}' must be an EXR, whose floats hold the map exactly; name it '{}'", option, path.string(),
-                                        fs::path(path).replace_extension(".exr").string()));
+            throw UserError(fmt::format("{}: '{}' must be an EXR, whose floats hold the map exactly; name it '{}'",
+                                        option, path.string(), fs::path(path).replace_extension(".exr").string()));
     } else if (is_movie(path) ? !is_movie_name(path) : !can_write_picture(path)) {
-        throw UserError(fmt::format("{}: '{}': no format that can be written has the extension '{}'; use .exr, .png, .tif, .jpg, .dpx, "
-                                    ".mp4, .mov or .mkv", option, path.string(), extension));
+        throw UserError(fmt::format(
+            "{}: '{}': no format that can be written has the extension '{}'; use .exr, .png, .tif, .jpg, .dpx, "
+            ".mp4, .mov or .mkv",
+            option, path.string(), extension));
     }
 }
 
@@ -64,14 +67,16 @@ void Outputs::add(const std::string& option, const fs::path& path, OutputKind ki
 void Outputs::check(const std::vector<int>& frames, const std::vector<NamedFiles>& inputs) const {
     for (const Output& output : outputs_)
         if (!output.single && !output.files.is_sequence() && frames.size() > 1)
-            throw UserError(fmt::format("{}: '{}' names one file for {} frames; put #### where the frame number goes, e.g. '{}'", output.option,
-                                        output.files.text().string(), frames.size(),
-                                        numbered(output.files.text(), output.files.text().extension().string())));
+            throw UserError(
+                fmt::format("{}: '{}' names one file for {} frames; put #### where the frame number goes, e.g. '{}'",
+                            output.option, output.files.text().string(), frames.size(),
+                            numbered(output.files.text(), output.files.text().extension().string())));
     std::map<fs::path, std::string> taken;
     const auto claim = [&](const fs::path& file, const std::string& who, bool written) {
         const auto [other, fresh] = taken.emplace(identity(file), who);
         if (fresh || !written || other->second == who) return;
-        throw UserError(fmt::format("{} and {} are the same file, '{}'; give the output another name", other->second, who, file.string()));
+        throw UserError(fmt::format("{} and {} are the same file, '{}'; give the output another name", other->second,
+                                    who, file.string()));
     };
     const auto claim_all = [&](const NamedFiles& named, bool written) {
         if (named.single || !named.files.is_sequence()) {

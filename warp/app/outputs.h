@@ -26,11 +26,12 @@ struct NamedFiles {
 
 class Outputs {
   public:
-    /// UserError: no file name, a format that cannot be written or cannot hold this, a folder that is not there, something
-    /// at that name that is not a file.
+    /// UserError: no file name, a format that cannot be written or cannot hold this, a folder that is not there,
+    /// something at that name that is not a file.
     void add(const std::string& option, const std::filesystem::path& path, OutputKind kind);
 
-    /// UserError: one file for many frames; an output that is an input, or a frame of it; two outputs that are one file.
+    /// UserError: one file for many frames; an output that is an input, or a frame of it; two outputs that are one
+    /// file.
     void check(const std::vector<int>& frames, const std::vector<NamedFiles>& inputs) const;
 
     /// Whether all of a frame's files are there (they appear only when whole).

@@ -35,17 +35,23 @@ void guarded(FrameRecord& record, Stage&& stage) {
 }  // namespace
 
 bool RunResult::failed() const {
-    return interrupted || std::any_of(records.begin(), records.end(), [](const FrameRecord& r) { return !r.error.empty(); });
+    return interrupted ||
+           std::any_of(records.begin(), records.end(), [](const FrameRecord& r) { return !r.error.empty(); });
 }
 
-int thread_count(const RunOptions& options) { return options.threads > 0 ? options.threads : tbb::info::default_concurrency(); }
+int thread_count(const RunOptions& options) {
+    return options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+}
 
-RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads, double frame_bytes) {
+RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads,
+                       double frame_bytes) {
     const auto memory = static_cast<double>(memory_limit());
     if (frame_bytes > memory)
-        throw UserError(fmt::format("a frame of this size needs {:.3g} GB of memory, {:.3g} GB are available; use smaller pictures",
-                                    frame_bytes / 1e9, memory / 1e9));
-    const auto in_flight = static_cast<std::size_t>(std::clamp(memory / std::max(frame_bytes, 1.0), 1.0, double(threads + kFramesAhead)));
+        throw UserError(
+            fmt::format("a frame of this size needs {:.3g} GB of memory, {:.3g} GB are available; use smaller pictures",
+                        frame_bytes / 1e9, memory / 1e9));
+    const auto in_flight =
+        static_cast<std::size_t>(std::clamp(memory / std::max(frame_bytes, 1.0), 1.0, double(threads + kFramesAhead)));
     RunResult result;
     Progress progress(options.progress, total, total == 1 ? "frame" : "frames");
     std::atomic<bool> stop{false};
@@ -103,7 +109,8 @@ void print_outcome(const RunResult& result, const RunOptions& options, std::size
         fmt::print(stderr, "eikonal: interrupted after {} of {} frames; {}\n", written, total, rest);
     else if (bad > 0 && total > 1)
         fmt::print(stderr, "eikonal: {} of {} frames done; {}\n", written, total,
-                   options.skip_bad_frames ? "the bad ones were skipped" : rest + "; --skip-bad-frames passes over bad frames");
+                   options.skip_bad_frames ? "the bad ones were skipped"
+                                           : rest + "; --skip-bad-frames passes over bad frames");
 }
 
 }  // namespace eikonal

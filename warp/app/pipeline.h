@@ -1,9 +1,9 @@
 /// Frames through a bounded pipeline: taken in order, worked on in parallel, finished in order. Reading, warping and
-/// writing of different frames overlap; no more than kFramesAhead frames beyond the number of threads are in memory, fewer
-/// where they are so large that memory_limit() does not hold them.
+/// writing of different frames overlap; no more than kFramesAhead frames beyond the number of threads are in memory,
+/// fewer where they are so large that memory_limit() does not hold them.
 ///
-/// A frame that fails is reported as "frame F: reason" and the others go on or, unless skip_bad_frames, no more are begun.
-/// An interrupt ends the run after the frames under way. Nothing already finished is lost either way.
+/// A frame that fails is reported as "frame F: reason" and the others go on or, unless skip_bad_frames, no more are
+/// begun. An interrupt ends the run after the frames under way. Nothing already finished is lost either way.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ inline constexpr int kFramesAhead = 1;
 /// What became of one frame.
 struct FrameRecord {
     int frame = 0;
-    std::string error;  ///< empty: written
+    std::string error;            ///< empty: written
     double rms = 0, largest = 0;  ///< displacement [px]
     double seconds = 0;           ///< of work
 };
@@ -49,7 +49,8 @@ struct Stages {
 };
 
 /// frame_bytes: of memory that one frame takes on its way, about. UserError: more than there is.
-RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads, double frame_bytes);
+RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads,
+                       double frame_bytes);
 
 /// Tells on stderr how a run ended that did not make all frames. `rest`: what becomes of them.
 void print_outcome(const RunResult& result, const RunOptions& options, std::size_t total, const std::string& rest);

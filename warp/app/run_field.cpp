@@ -34,8 +34,12 @@ struct Slices {
 };
 
 void describe(Slices& slices, const std::array<double, 4>& period, const std::array<double, 3>& spacing, double t) {
-    for (int i = 0; i < 4; ++i) slices.attributes.emplace_back(fmt::format("eikonal/period.{}", "xyzt"[i]), period[static_cast<std::size_t>(i)]);
-    for (int i = 0; i < 3; ++i) slices.attributes.emplace_back(fmt::format("eikonal/spacing.{}", "xyz"[i]), spacing[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 4; ++i)
+        slices.attributes.emplace_back(fmt::format("eikonal/period.{}", "xyzt"[i]),
+                                       period[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i)
+        slices.attributes.emplace_back(fmt::format("eikonal/spacing.{}", "xyz"[i]),
+                                       spacing[static_cast<std::size_t>(i)]);
     slices.attributes.emplace_back("eikonal/time", t);
 }
 
@@ -51,9 +55,12 @@ Slices lattice_slices(const TurbulenceSpec& spec, double t, double exaggeration,
         for (int row = 0; row < g.size[1]; ++row)
             for (int x = 0; x < g.size[0]; ++x) {
                 const int y = g.size[1] - 1 - row;  // y up: the last row of nodes is on top
-                const auto node = (static_cast<std::size_t>(x) * static_cast<std::size_t>(g.size[1]) + static_cast<std::size_t>(y)) *
-                                      static_cast<std::size_t>(g.size[2]) + static_cast<std::size_t>(z);
-                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(g.size[0]) + static_cast<std::size_t>(x))];
+                const auto node =
+                    (static_cast<std::size_t>(x) * static_cast<std::size_t>(g.size[1]) + static_cast<std::size_t>(y)) *
+                        static_cast<std::size_t>(g.size[2]) +
+                    static_cast<std::size_t>(z);
+                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(g.size[0]) +
+                                                 static_cast<std::size_t>(x))];
                 for (std::size_t c = 0; c < kChannels; ++c)
                     pixel[c] = (*nodes)[c][node] * static_cast<float>(c == 0 ? exaggeration : force_factor);
             }
@@ -72,8 +79,10 @@ Slices noise_slices(const TurbulenceSpec& spec, double t, double exaggeration, d
     slices.fill = [=](int z, std::vector<float>& out) {
         tbb::parallel_for(0, size[1], [&](int row) {
             for (int x = 0; x < size[0]; ++x) {
-                const IndexSample s = field->sample({x * spacing[0], (size[1] - 1 - row) * spacing[1], z * spacing[2]}, t);
-                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(size[0]) + static_cast<std::size_t>(x))];
+                const IndexSample s =
+                    field->sample({x * spacing[0], (size[1] - 1 - row) * spacing[1], z * spacing[2]}, t);
+                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(size[0]) +
+                                                 static_cast<std::size_t>(x))];
                 pixel[0] = static_cast<float>(exaggeration * s.n);
                 for (int c = 0; c < 3; ++c) pixel[c + 1] = static_cast<float>(force_factor * s.gradient[c]);
             }
@@ -84,27 +93,37 @@ Slices noise_slices(const TurbulenceSpec& spec, double t, double exaggeration, d
 }
 
 /// A screen is one slice: n and F averaged over its slab, in the lateral axes of the camera (F.z = 0).
-Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, double exaggeration, double force_factor) {
+Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, double exaggeration,
+                     double force_factor) {
     const std::array<int, 2> resolution = scene.camera.resolution.value_or(std::array{1920, 1080});
     const Camera camera = CameraPath(scene.camera, resolution[0], resolution[1]).reference();
-    const ScreenView view{camera.projection == Projection::Perspective, DepthInput({}, scene.plate).far(),
-                          0.5 * resolution[0] / camera.f_px, 0.5 * resolution[1] / camera.f_px, 1 / camera.f_px, scene.optics.aperture,
+    const ScreenView view{camera.projection == Projection::Perspective,
+                          DepthInput({}, scene.plate).far(),
+                          0.5 * resolution[0] / camera.f_px,
+                          0.5 * resolution[1] / camera.f_px,
+                          1 / camera.f_px,
+                          scene.optics.aperture,
                           scene.time.fps.value_or(kDefaultFps)};
     const std::vector<ScreenGeometry> geometry = layout_screens(spec, view);
     check_screens(spec, geometry, memory_limit());
-    auto screens = std::make_shared<const std::vector<ScreenSnapshot>>(ScreenField(spec, geometry, camera.right, camera.up).at(t));
+    auto screens =
+        std::make_shared<const std::vector<ScreenSnapshot>>(ScreenField(spec, geometry, camera.right, camera.up).at(t));
     int width = 0, height = 0;
     for (const ScreenGeometry& g : geometry) {
         width = std::max(width, g.nx);
         height = std::max(height, g.ny);
     }
-    Slices slices{static_cast<int>(geometry.size()), width, height, {}, {}, [geometry](int m) { return geometry[static_cast<std::size_t>(m)].w; }};
+    Slices slices{static_cast<int>(geometry.size()), width, height, {}, {}, [geometry](int m) {
+                      return geometry[static_cast<std::size_t>(m)].w;
+                  }};
     slices.fill = [=](int m, std::vector<float>& out) {
         const ScreenGeometry& g = geometry[static_cast<std::size_t>(m)];
         tbb::parallel_for(0, height, [&](int row) {
             for (int x = 0; x < width; ++x) {
-                const auto s = (*screens)[static_cast<std::size_t>(m)].sample(x * g.Lx / g.nx, (height - 1 - row) * g.Ly / g.ny);
-                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))];
+                const auto s =
+                    (*screens)[static_cast<std::size_t>(m)].sample(x * g.Lx / g.nx, (height - 1 - row) * g.Ly / g.ny);
+                float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                                                 static_cast<std::size_t>(x))];
                 pixel[0] = static_cast<float>(exaggeration * double{s.value} / g.thickness);
                 pixel[1] = static_cast<float>(force_factor * double{s.dx} / g.thickness);
                 pixel[2] = static_cast<float>(force_factor * double{s.dy} / g.thickness);
@@ -119,18 +138,23 @@ Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, d
 
 Slices make_slices(const FieldOptions& options, const Scene& scene) {
     if (static_cast<std::size_t>(options.medium) >= scene.media.size())
-        throw UserError(fmt::format("--medium {}: the scene has {} medi{}, counted from 0", options.medium, scene.media.size(),
-                                    scene.media.size() == 1 ? "um" : "a"));
+        throw UserError(fmt::format("--medium {}: the scene has {} medi{}, counted from 0", options.medium,
+                                    scene.media.size(), scene.media.size() == 1 ? "um" : "a"));
     const auto* spec = std::get_if<TurbulenceSpec>(&scene.media[static_cast<std::size_t>(options.medium)]);
     if (spec == nullptr)
-        throw UserError(fmt::format("--medium {}: is not turbulence; field writes media of type \"turbulence\"", options.medium));
-    const double t = (options.frame.value_or(scene.time.first_frame) - scene.time.first_frame) / scene.time.fps.value_or(kDefaultFps);
+        throw UserError(
+            fmt::format("--medium {}: is not turbulence; field writes media of type \"turbulence\"", options.medium));
+    const double t = (options.frame.value_or(scene.time.first_frame) - scene.time.first_frame) /
+                     scene.time.fps.value_or(kDefaultFps);
     const double exaggeration = scene.optics.exaggeration;
     const double force = exaggeration * (scene.optics.ray_equation == RayEquation::Paper ? 0.5 : 1.0);
     switch (spec->form) {
-        case TurbulenceForm::Lattice: return lattice_slices(*spec, t, exaggeration, force);
-        case TurbulenceForm::GradientNoise: return noise_slices(*spec, t, exaggeration, force);
-        case TurbulenceForm::Screens: break;
+        case TurbulenceForm::Lattice:
+            return lattice_slices(*spec, t, exaggeration, force);
+        case TurbulenceForm::GradientNoise:
+            return noise_slices(*spec, t, exaggeration, force);
+        case TurbulenceForm::Screens:
+            break;
     }
     return screen_slices(*spec, t, scene, exaggeration, force);
 }
@@ -158,7 +182,9 @@ int run(const FieldOptions& options) {
     std::vector<float> values(kChannels * window.area());
     Progress progress(options.run.progress, numbers.size(), "slices");
     for (const int slice : numbers) {
-        if (interrupted()) throw FrameError(fmt::format("interrupted after {} of {} slices; the same command goes on", slice, slices.count));
+        if (interrupted())
+            throw FrameError(
+                fmt::format("interrupted after {} of {} slices; the same command goes on", slice, slices.count));
         if (options.run.overwrite || !outputs.finished(slice)) {
             slices.fill(slice, values);
             std::vector<Attribute> attributes = slices.attributes;

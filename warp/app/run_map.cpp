@@ -39,43 +39,49 @@ int run(const MapOptions& options) {
     if (options.strength.stmap) outputs.add("--stmap", *options.strength.stmap, OutputKind::Maps);
     if (options.run.report) outputs.add("--report", *options.run.report, OutputKind::Report);
     if (options.depth.depth && options.depth.depth->starts_with(':'))
-        throw UserError(fmt::format("--depth {}: map has no INPUT whose channel it could be; name a file", *options.depth.depth));
-    std::vector<int> frames = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{scene.time.first_frame};
+        throw UserError(
+            fmt::format("--depth {}: map has no INPUT whose channel it could be; name a file", *options.depth.depth));
+    std::vector<int> frames =
+        options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{scene.time.first_frame};
     const PixelWindow display = choose_display(scene, options.depth, frames.front());
     const Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {});
     outputs.check(frames, shot.companions());
     if (options.run.verbose)
         for (const std::string& note : shot.notes()) fmt::print(stderr, "eikonal: {}\n", note);
-    for (const std::string& warning : shot.displacer().warnings()) fmt::print(stderr, "eikonal: warning: {}\n", warning);
+    for (const std::string& warning : shot.displacer().warnings())
+        fmt::print(stderr, "eikonal: warning: {}\n", warning);
     const std::size_t asked = frames.size();
     if (!options.run.overwrite) std::erase_if(frames, [&](int frame) { return outputs.finished(frame); });
     const std::size_t kept = asked - frames.size();
     if (kept > 0)
-        fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept, kept == 1 ? " is" : "s are");
+        fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept,
+                   kept == 1 ? " is" : "s are");
     if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     if (!frames.empty()) shot.try_companions(frames.front(), nullptr, {}, display);
 
     std::size_t next = 0;
-    const Stages stages{
-        [&]() -> std::unique_ptr<FrameItem> {
-            if (next == frames.size()) return nullptr;
-            auto item = std::make_unique<FrameItem>();
-            item->record.frame = frames[next++];
-            return item;
-        },
-        [] { return 0; },
-        [&](FrameItem& item) {
-            const int frame = item.record.frame;
-            const DisplacementMap map = std::move(shot.maps(frame, {0}, nullptr, {}, display).front());
-            const MapStatistics size = statistics(map);
-            item.record.rms = size.rms;
-            item.record.largest = size.largest;
-            if (const NamedFiles* stmap = outputs.find("--stmap")) write_stmap(stmap->at(frame), map, display);
-            write_displacement(outputs.find("-o")->at(frame), map, display);
-        },
-        [](FrameItem&) {}};
+    const Stages stages{[&]() -> std::unique_ptr<FrameItem> {
+                            if (next == frames.size()) return nullptr;
+                            auto item = std::make_unique<FrameItem>();
+                            item->record.frame = frames[next++];
+                            return item;
+                        },
+                        [] { return 0; },
+                        [&](FrameItem& item) {
+                            const int frame = item.record.frame;
+                            const DisplacementMap map = std::move(shot.maps(frame, {0}, nullptr, {}, display).front());
+                            const MapStatistics size = statistics(map);
+                            item.record.rms = size.rms;
+                            item.record.largest = size.largest;
+                            if (const NamedFiles* stmap = outputs.find("--stmap"))
+                                write_stmap(stmap->at(frame), map, display);
+                            write_displacement(outputs.find("-o")->at(frame), map, display);
+                        },
+                        [](FrameItem&) {}};
     RunResult result;
-    if (!frames.empty()) result = run_pipeline(stages, options.run, frames.size(), threads, kMapBytes * static_cast<double>(display.area()));
+    if (!frames.empty())
+        result =
+            run_pipeline(stages, options.run, frames.size(), threads, kMapBytes * static_cast<double>(display.area()));
     if (options.run.report) write_report(*options.run.report, shot, result, kept);
     print_outcome(result, options.run, frames.size(), "the same command makes the rest");
     return result.failed() ? 1 : 0;

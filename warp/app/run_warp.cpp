@@ -28,15 +28,16 @@ constexpr double kPixelBytes = 3 * 16 + 8 + 8 + 12;
 constexpr double kChannelBytes = 2 * 4;
 
 /// Frames to warp: the user's list `wanted`, or all there are.
-std::vector<int> choose_frames(const WarpOptions& options, const Footage& footage, const std::vector<int>& wanted, int first_frame, bool& hole) {
+std::vector<int> choose_frames(const WarpOptions& options, const Footage& footage, const std::vector<int>& wanted,
+                               int first_frame, bool& hole) {
     std::vector<int> frames = options.run.frames ? wanted : footage.frames;
     if (footage.kind == FootageKind::Still) return options.run.frames ? frames : std::vector<int>{first_frame};
     if (footage.kind == FootageKind::Movie) {
         std::sort(frames.begin(), frames.end());
         const auto last = static_cast<int>(footage.frames.size());
         if (options.run.frames && (frames.front() < 1 || (last > 0 && frames.back() > last)))
-            throw UserError(fmt::format("--frames {}: the frames of '{}' are 1 to {}", *options.run.frames, options.input.string(),
-                                        last > 0 ? fmt::to_string(last) : "its last"));
+            throw UserError(fmt::format("--frames {}: the frames of '{}' are 1 to {}", *options.run.frames,
+                                        options.input.string(), last > 0 ? fmt::to_string(last) : "its last"));
         return frames;
     }
     std::vector<int> missing;
@@ -49,7 +50,8 @@ std::vector<int> choose_frames(const WarpOptions& options, const Footage& footag
     }
     if (missing.empty()) return frames;
     hole = true;
-    const std::string what = fmt::format("'{}' lacks frame{} {}", options.input.string(), missing.size() == 1 ? "" : "s", frame_list(missing));
+    const std::string what = fmt::format("'{}' lacks frame{} {}", options.input.string(),
+                                         missing.size() == 1 ? "" : "s", frame_list(missing));
     if (!options.run.skip_bad_frames)
         throw FrameError(what + "; --skip-bad-frames goes on without, --frames names those to make");
     fmt::print(stderr, "eikonal: warning: {}\n", what);
@@ -66,9 +68,15 @@ std::vector<double> shutter_offsets(const WarpOptions& options) {
 
 class WarpRun {
   public:
-    WarpRun(const WarpOptions& options, const Footage& footage, const Shot& shot, const Outputs& outputs, std::vector<int> frames)
-        : options_(options), footage_(footage), shot_(shot), outputs_(outputs), frames_(std::move(frames)),
-          offsets_(shutter_offsets(options)), output_(*outputs.find("-o")) {
+    WarpRun(const WarpOptions& options, const Footage& footage, const Shot& shot, const Outputs& outputs,
+            std::vector<int> frames)
+        : options_(options),
+          footage_(footage),
+          shot_(shot),
+          outputs_(outputs),
+          frames_(std::move(frames)),
+          offsets_(shutter_offsets(options)),
+          output_(*outputs.find("-o")) {
         if (footage.kind == FootageKind::Movie) {
             reader_.emplace(options.input);
         } else if (footage.kind == FootageKind::Still) {
@@ -86,7 +94,8 @@ class WarpRun {
             failing_ = reader_->next_number();
             if (!open_ended) {
                 const int wanted = frames_[next_++];
-                while (reader_->next_number() < wanted && reader_->skip()) {}
+                while (reader_->next_number() < wanted && reader_->skip()) {
+                }
                 failing_ = wanted;
             }
             MovieFrame frame;
@@ -111,8 +120,9 @@ class WarpRun {
         if (footage_.kind == FootageKind::Sequence) item.plate = read_picture(file);
         const PixelWindow display = plate_display(item.plate);
         if (display.width != footage_.display.width || display.height != footage_.display.height)
-            throw FrameError(fmt::format("'{}' is {} x {}, but the shot is {} x {}; all frames of a shot must have one size", file.string(),
-                                         display.width, display.height, footage_.display.width, footage_.display.height));
+            throw FrameError(fmt::format(
+                "'{}' is {} x {}, but the shot is {} x {}; all frames of a shot must have one size", file.string(),
+                display.width, display.height, footage_.display.width, footage_.display.height));
         const auto* picture = std::get_if<Picture>(&item.plate);
         const std::vector<DisplacementMap> maps =
             shot_.maps(frame, offsets_, picture, picture != nullptr ? file : options_.input, plate_window(item.plate));
@@ -123,11 +133,14 @@ class WarpRun {
             item.record.largest = size.largest;
         }
         if (const NamedFiles* stmap = outputs_.find("--stmap")) write_stmap(stmap->at(frame), middle, display);
-        if (const NamedFiles* displacement = outputs_.find("--displacement")) write_displacement(displacement->at(frame), middle, display);
+        if (const NamedFiles* displacement = outputs_.find("--displacement"))
+            write_displacement(displacement->at(frame), middle, display);
         warp_plate(item.plate, maps, {options_.filter, options_.edge, options_.dispersion});
         if (output_.single) {
-            if (picture == nullptr) item.encoded = std::move(std::get<MovieFrame>(item.plate));
-            else item.encoded = frame_from_linear(main_colour(item.plate), *movie_format_, main_is_grey(*picture));
+            if (picture == nullptr)
+                item.encoded = std::move(std::get<MovieFrame>(item.plate));
+            else
+                item.encoded = frame_from_linear(main_colour(item.plate), *movie_format_, main_is_grey(*picture));
             item.plate = Picture{};
             return;
         }
@@ -154,7 +167,8 @@ class WarpRun {
         if (auto* picture = std::get_if<Picture>(&plate))
             write_picture(file, picture_for_format(std::move(*picture), file));
         else
-            write_picture(file, picture_from_linear(main_colour(plate), file, footage_.has_alpha, footage_.source_bits));
+            write_picture(file,
+                          picture_from_linear(main_colour(plate), file, footage_.has_alpha, footage_.source_bits));
     }
 
     void open_movie() {
@@ -206,9 +220,10 @@ RunResult warp_frames(const WarpOptions& options, const Footage& footage, const 
                       const std::vector<int>& frames, int threads) {
     try_companions(footage, shot, frames.empty() ? 1 : frames.front());
     WarpRun warp(options, footage, shot, outputs, frames);
-    const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); }, [&](FrameItem& item) { warp.work(item); },
-                        [&](FrameItem& item) { warp.finish(item); }};
-    const double bytes = static_cast<double>(footage.display.area()) * (kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
+    const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); },
+                        [&](FrameItem& item) { warp.work(item); }, [&](FrameItem& item) { warp.finish(item); }};
+    const double bytes = static_cast<double>(footage.display.area()) *
+                         (kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
     RunResult result = run_pipeline(stages, options.run, frames.size(), threads, bytes);
     if (!result.interrupted && (options.run.skip_bad_frames || !result.failed())) warp.close();
     return result;
@@ -237,8 +252,8 @@ int run(const WarpOptions& options) {
     print_lines(footage.notes, "warning: ");
     bool hole = false;
     std::vector<int> frames = choose_frames(options, footage, wanted, scene.time.first_frame, hole);
-    const Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
-                    footage.fps ? std::optional(footage.fps->value()) : std::nullopt);
+    const Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display,
+                    footage.pixel_aspect, footage.fps ? std::optional(footage.fps->value()) : std::nullopt);
     std::vector<NamedFiles> inputs = shot.companions();
     inputs.push_back({"the input", footage.files, footage.kind == FootageKind::Movie});
     outputs.check(frames, inputs);
@@ -251,7 +266,8 @@ int run(const WarpOptions& options) {
         if (to_movie) {
             std::error_code ignored;
             if (std::filesystem::exists(options.output, ignored)) {
-                fmt::print(stderr, "eikonal: '{}' is already there and kept; --overwrite makes it anew\n", options.output.string());
+                fmt::print(stderr, "eikonal: '{}' is already there and kept; --overwrite makes it anew\n",
+                           options.output.string());
                 return hole ? 1 : 0;
             }
         } else {
@@ -259,13 +275,15 @@ int run(const WarpOptions& options) {
         }
         kept = before - frames.size();
         if (kept > 0)
-            fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept, kept == 1 ? " is" : "s are");
+            fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept,
+                       kept == 1 ? " is" : "s are");
     }
     if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     RunResult result;
     if (kept == 0 || !frames.empty()) result = warp_frames(options, footage, shot, outputs, frames, threads);
     if (options.run.report) write_report(*options.run.report, shot, result, kept);
-    print_outcome(result, options.run, frames.size(), to_movie ? "the movie was not written" : "the same command makes the rest");
+    print_outcome(result, options.run, frames.size(),
+                  to_movie ? "the movie was not written" : "the same command makes the rest");
     return result.failed() || hole ? 1 : 0;
 }
 

@@ -35,14 +35,16 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
     gain_ = strength.gain;
     if (strength.rms) {
         if (natural == 0 && *strength.rms > 0)
-            throw UserError(fmt::format("--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength (cn2)",
-                                        *strength.rms));
+            throw UserError(fmt::format(
+                "--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength (cn2)",
+                *strength.rms));
         gain_ = natural > 0 ? gain_ * *strength.rms / natural : 0;
     }
     expected_rms_ = natural * gain_;
     if (strength.mask) {
         const FileChannel split = split_channel(*strength.mask);
-        if (split.file.empty()) throw UserError(fmt::format("--mask: '{}' names no file; give FILE or FILE:CHANNEL", *strength.mask));
+        if (split.file.empty())
+            throw UserError(fmt::format("--mask: '{}' names no file; give FILE or FILE:CHANNEL", *strength.mask));
         mask_ = FilePattern::parse(split.file);
         mask_channel_ = split.channel;
     }
@@ -53,9 +55,11 @@ std::vector<std::string> Shot::notes() const {
     lines.push_back(fmt::format("scene: {}", scene_.file.empty() ? "none" : scene_.file.filename().string()));
     lines.push_back("depth: " + depth_.description());
     for (const std::string& note : displacer_->notes()) lines.push_back(note);
-    lines.push_back(fmt::format("displacement: {:.3g} px rms expected at {:g} m, gain {:.4g}", expected_rms_, depth_.far(), gain_));
+    lines.push_back(
+        fmt::format("displacement: {:.3g} px rms expected at {:g} m, gain {:.4g}", expected_rms_, depth_.far(), gain_));
     if (const double focusing = displacer_->focusing_variance(depth_.far()); focusing > 0)
-        lines.push_back(fmt::format("focusing variance at {:g} m: {:.3g} (rays begin to fold near 1)", depth_.far(), focusing));
+        lines.push_back(
+            fmt::format("focusing variance at {:g} m: {:.3g} (rays begin to fold near 1)", depth_.far(), focusing));
     return lines;
 }
 
@@ -66,8 +70,10 @@ std::optional<std::string> Shot::missing_companion(const std::vector<int>& frame
         for (const int frame : frames) {
             const std::filesystem::path file = files->at(frame);
             if (!std::filesystem::exists(file, ignored))
-                return fmt::format("frame {}: the {} '{}' does not exist; it must have every frame that is warped (--frames names fewer)",
-                                   frame, what, file.string());
+                return fmt::format(
+                    "frame {}: the {} '{}' does not exist; it must have every frame that is warped (--frames names "
+                    "fewer)",
+                    frame, what, file.string());
         }
         return {};
     };
@@ -75,7 +81,8 @@ std::optional<std::string> Shot::missing_companion(const std::vector<int>& frame
     return check(mask_, "mask");
 }
 
-void Shot::try_companions(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& window) const {
+void Shot::try_companions(int frame, const Picture* input, const std::filesystem::path& input_file,
+                          const PixelWindow& window) const {
     try {
         if (!depth_.constant()) depth_.plane(frame, input, input_file, window, display_, displacer_->camera(frame));
         if (mask_) read_matte(mask_->at(frame), mask_channel_, window, display_);
@@ -110,7 +117,8 @@ std::vector<DisplacementMap> Shot::maps(int frame, const std::vector<double>& of
     std::vector<DisplacementMap> result;
     for (const double offset : offsets) {
         DisplacementMap map{window, std::vector<float>(2 * window.area())};
-        if (gain_ != 0) displacer_->at(frame + offset, nearest, farthest).map(window, source, meeting_, gain_, map.uv.data());
+        if (gain_ != 0)
+            displacer_->at(frame + offset, nearest, farthest).map(window, source, meeting_, gain_, map.uv.data());
         for (std::size_t i = 0; i < mask.size(); ++i) {
             map.uv[2 * i] *= mask[i];
             map.uv[2 * i + 1] *= mask[i];
@@ -140,7 +148,8 @@ void write_stmap(const std::filesystem::path& file, const DisplacementMap& map, 
     std::vector<float> st(3 * map.window.area());
     for (int row = 0; row < map.window.height; ++row)
         for (int column = 0; column < map.window.width; ++column) {
-            const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(map.window.width) + static_cast<std::size_t>(column);
+            const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(map.window.width) +
+                           static_cast<std::size_t>(column);
             const double x = map.window.x0 - display.x0 + column + 0.5 + double{map.uv[2 * i]};
             const double y = map.window.y0 - display.y0 + row + 0.5 + double{map.uv[2 * i + 1]};
             st[3 * i] = static_cast<float>(x / display.width);

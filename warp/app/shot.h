@@ -37,10 +37,11 @@ class Shot {
     std::vector<DisplacementMap> maps(int frame, const std::vector<double>& offsets, const Picture* input,
                                       const std::filesystem::path& input_file, const PixelWindow& window) const;
 
-    /// Looks at the depth maps and mattes before any frame is begun: one line on the first that is missing. UserError: the
-    /// first frame's cannot be what the options say of it. `input`: as for maps().
+    /// Looks at the depth maps and mattes before any frame is begun: one line on the first that is missing. UserError:
+    /// the first frame's cannot be what the options say of it. `input`: as for maps().
     std::optional<std::string> missing_companion(const std::vector<int>& frames) const;
-    void try_companions(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& window) const;
+    void try_companions(int frame, const Picture* input, const std::filesystem::path& input_file,
+                        const PixelWindow& window) const;
     /// Files that are read besides the footage.
     std::vector<NamedFiles> companions() const;
 

@@ -64,7 +64,7 @@ struct Layer {
     std::size_t medium = 0;
     Model model = Model::Screens;
     std::variant<ScreenField, LatticeField, GradientNoiseField> field;
-    double step = 0;      ///< [m] of ray, first-order
+    dvec3 cell{1, 1, 1};  ///< of the field [m], first-order
     double constant = 0;  ///< c of `table`
     int padding = 1;      ///< of the tables' splines
 };
@@ -144,12 +144,12 @@ struct Displacer::Shot {
                         i, perspective() ? "perspective" : "orthographic", geometry.size(), middle.nx, middle.ny,
                         middle.nt, settings.far, middle.thickness, middle.Lx, middle.Ly, middle.T));
         layers.push_back(
-            {i, Model::Screens, ScreenField(spec, std::move(geometry), reference.right, reference.up), 0, 0});
+            {i, Model::Screens, ScreenField(spec, std::move(geometry), reference.right, reference.up), {}, 0});
         if (glm::dot(spec.velocity, reference.forward) != 0)
             notes.push_back(
                 fmt::format("medium.{}: the wind's part along the view axis ({:.3g} m/s) does not move thin screens", i,
                             glm::dot(spec.velocity, reference.forward)));
-        const double focusing = focusing_of(layers.back(), settings.far);
+        const double focusing = strength * strength * focusing_of(layers.back(), settings.far);
         if (focusing > 0.5)
             warnings.push_back(
                 fmt::format("medium.{}: focusing variance {:.2g} at {:g} m: rays fold, where any first-order warp is "
@@ -196,8 +196,8 @@ struct Displacer::Shot {
                 "medium.{}: the path of {:g} m is longer than the lattice period of {:g} m along it, beyond which "
                 "the field repeats and displacement is overstated; use form=\"screens\", --far or a longer period",
                 i, settings.far, geometry.period[static_cast<std::size_t>(rays.axis)]));
-        Layer layer{i, model, LatticeField(spec, geometry), 0, 0};
-        layer.step = std::min({geometry.spacing(0), geometry.spacing(1), geometry.spacing(2)});
+        Layer layer{i, model, LatticeField(spec, geometry), {}, 0};
+        layer.cell = {geometry.spacing(0), geometry.spacing(1), geometry.spacing(2)};
         if (model != Model::FirstOrder) {
             const std::array paths{kNearestPadded * settings.far, settings.far};
             layer.padding = path_padding(std::get<LatticeField>(layer.field), rays, paths,
@@ -215,7 +215,7 @@ struct Displacer::Shot {
 
     void add_noise(std::size_t i, const TurbulenceSpec& spec) {
         notes.push_back(fmt::format("medium.{}: model first-order (gradient noise has no other), not periodic", i));
-        layers.push_back({i, Model::FirstOrder, GradientNoiseField(spec), 0.5 * spec.inner_scale, 0});
+        layers.push_back({i, Model::FirstOrder, GradientNoiseField(spec), dvec3(0.5 * spec.inner_scale), 0});
     }
 
     [[noreturn]] void refuse_model() const {
@@ -246,7 +246,7 @@ struct Displacer::Shot {
         if (const auto* field = std::get_if<ScreenField>(&layer.field))
             return ScreensInstant{field->at(t), reference, strength, spec(layer).falloff};
         if (const auto* field = std::get_if<GradientNoiseField>(&layer.field))
-            return FirstOrderInstant{GradientNoiseInstant{field, t}, strength, layer.step, aperture, settings.far};
+            return FirstOrderInstant{GradientNoiseInstant{field, t}, strength, layer.cell, aperture, settings.far};
         const auto& field = std::get<LatticeField>(layer.field);
         const PathRays rays = nearest_axis(camera, aperture);
         switch (layer.model) {
@@ -262,7 +262,7 @@ struct Displacer::Shot {
                                      DepthInterpolation::Hermite, strength, layer.padding);
             default:
                 return FirstOrderInstant{LatticeSnapshot(field, t, first_order_padding(field.geometry())), strength,
-                                         layer.step, aperture, settings.far};
+                                         layer.cell, aperture, settings.far};
         }
     }
 };
@@ -277,7 +277,7 @@ Band first_order_band(const FirstOrderInstant& model, const Camera& camera, doub
     band.perspective = camera.projection == Projection::Perspective;
     band.interpolation = DepthInterpolation::Hermite;
     if (farthest > nearest) {
-        const double wanted = (farthest - nearest) / (2 * model.step);
+        const double wanted = (farthest - nearest) * model.cells_along(camera.forward) / 2;
         const int intervals =
             std::clamp(static_cast<int>(std::ceil(std::min(wanted, 1e6))), 1, kMostFirstOrderDepths - 1);
         for (int i = 0; i <= intervals; ++i) {
@@ -291,7 +291,7 @@ Band first_order_band(const FirstOrderInstant& model, const Camera& camera, doub
     } else {
         band.depths = {nearest};
     }
-    band.spacing = node_spacing(model.step * camera.f_px / (band.perspective ? farthest : 1.0));
+    band.spacing = node_spacing(model.finest_cell() * camera.f_px / (band.perspective ? farthest : 1.0));
     return band;
 }
 

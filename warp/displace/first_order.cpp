@@ -11,9 +11,9 @@ namespace {
 constexpr int kFewestApertureRays = 7, kMostApertureRays = 64;
 
 /// Points of equal weight on the unit disc (Vogel's spiral); one point, the centre, for a point aperture.
-std::vector<dvec2> aperture_points(double aperture, double step) {
+std::vector<dvec2> aperture_points(double aperture, double cell) {
     if (aperture <= 0) return {{0, 0}};
-    const double across = std::min(aperture / step, 100.0);
+    const double across = std::min(aperture / cell, 100.0);
     const int n = std::clamp(static_cast<int>(across * across), kFewestApertureRays, kMostApertureRays);
     std::vector<dvec2> points;
     constexpr double kGoldenTurns = 0.38196601125010515;
@@ -42,10 +42,11 @@ void fill_node(Band& band, const FirstOrderInstant& model, const Medium& medium,
     constexpr double kGauss = 0.21132486540518711775;  // (1 - 1/√3)/2
     dvec3 x{0, 0, 0}, slope{0, 0, 0};                  // of ∫∫F in axial depth
     double z = 0;
+    const double cells = model.cells_along(ray.direction);  // a metre of depth
     const double scale = model.strength * ray.length * ray.length;
     for (std::size_t k = 0; k < band.depths.size(); ++k) {
         const double target = band.depths[k];
-        const double steps = std::max(1.0, std::ceil((target - z) * ray.length / model.step));
+        const double steps = std::max(1.0, std::ceil((target - z) * cells));
         const double h = (target - z) / steps;
         for (double i = 0; i < steps; ++i) {
             const double w = z + i * h;
@@ -63,7 +64,7 @@ void fill_node(Band& band, const FirstOrderInstant& model, const Medium& medium,
 }  // namespace
 
 void FirstOrderInstant::fill(Band& band, const Camera& camera) const {
-    const std::vector<dvec2> disc = aperture_points(aperture, step);
+    const std::vector<dvec2> disc = aperture_points(aperture, finest_cell());
     std::visit(
         [&](const auto& field) {
             for (int r = 0; r < band.rows; ++r)

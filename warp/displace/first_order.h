@@ -2,11 +2,12 @@
 ///
 ///     x1(z) = L² ∫₀^z (z - w) F(P(w)) dw        (PHYSICS 6; w is axial depth, L the ray's metres a metre of depth)
 ///
-/// by two-point Gauss-Legendre rules on steps no longer than `step`, so that no eddy is skipped. An aperture is a
+/// by two-point Gauss-Legendre rules on steps no longer than a cell of the field along the ray, so that no eddy is skipped. An aperture is a
 /// bundle of parallel (orthographic) or converging (perspective; on the object at `focus`) rays whose forces are
 /// averaged.
 #pragma once
 
+#include <algorithm>
 #include <variant>
 
 #include "noise/gradient_noise.h"
@@ -31,9 +32,13 @@ struct GradientNoiseInstant {
 struct FirstOrderInstant {
     std::variant<LatticeSnapshot, GradientNoiseInstant> medium;
     double strength;  ///< multiplies ∇n: ray equation and exaggeration
-    double step;      ///< [m] of ray
+    dvec3 cell;       ///< of the field along x, y, z [m]
     double aperture;  ///< diameter [m]; 0: a point
     double focus;     ///< axial depth on which a perspective aperture's rays converge [m]
+
+    /// Smallest cell, and cells a metre along a direction.
+    double finest_cell() const { return std::min({cell.x, cell.y, cell.z}); }
+    double cells_along(const dvec3& direction) const { return glm::length(direction / cell); }
 
     /// Adds X and S at every node and depth.
     void fill(Band& band, const Camera& camera) const;

@@ -18,6 +18,12 @@ namespace {
     throw FrameError(fmt::format("cannot write '{}': {}", path.string(), reason));
 }
 
+/// What the library says, which names the temporary, as one line that names the file.
+std::string reason(const OIIO::ImageOutput& output, const std::string& temporary, const fs::path& path,
+                   std::string_view fallback) {
+    return one_line(OIIO::Strutil::replace(output.geterror(), temporary, path.string(), true), fallback);
+}
+
 /// Opens, writes every part, closes.
 void write_parts(OIIO::ImageOutput& output, const std::string& name, const fs::path& path, const Picture& picture) {
     std::vector<OIIO::ImageSpec> specs;
@@ -36,9 +42,9 @@ void write_parts(OIIO::ImageOutput& output, const std::string& name, const fs::p
                             : announced ? output.open(name, static_cast<int>(specs.size()), specs.data())
                                         : output.open(name, specs[i]);
         if (!opened || !output.write_image(OIIO::TypeDesc::UNKNOWN, picture.parts[i].pixels.data()))
-            refuse(path, one_line(output.geterror(), "the format cannot hold this picture"));
+            refuse(path, reason(output, name, path, "the format cannot hold this picture"));
     }
-    if (!output.close()) refuse(path, one_line(output.geterror(), "closing failed"));
+    if (!output.close()) refuse(path, reason(output, name, path, "closing failed"));
 }
 
 /// Formats that do not write through a proxy hide errors; reading the file back shows them.

@@ -1,5 +1,9 @@
 #include "warp/image/pixel_codec.h"
 
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -156,8 +160,33 @@ EIKONAL_CLONES void decode_half_finite(const std::uint16_t* stored, float* value
     }
 }
 
-EIKONAL_CLONES void encode_half(const float* values, std::uint16_t* stored, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) stored[i] = float_to_half(values[i]);
+namespace {
+
+#if defined(__x86_64__)
+/// float_to_half by the processor's own conversion, which rounds alike; returns how many it has done.
+__attribute__((target("avx,f16c"))) std::size_t encode_half_f16c(const float* values, std::uint16_t* stored, std::size_t count) {
+    const __m256 largest = _mm256_set1_ps(65504.0f), sign = _mm256_set1_ps(-0.0f);
+    std::size_t i = 0;
+    for (; i + 8 <= count; i += 8) {
+        const __m256 value = _mm256_loadu_ps(values + i);
+        const __m256 number = _mm256_and_ps(value, _mm256_cmp_ps(value, value, _CMP_ORD_Q));  // NaN becomes 0
+        const __m256 magnitude = _mm256_min_ps(_mm256_andnot_ps(sign, number), largest);
+        const __m256 clamped = _mm256_or_ps(magnitude, _mm256_and_ps(sign, value));
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(stored + i), _mm256_cvtps_ph(clamped, _MM_FROUND_TO_NEAREST_INT));
+    }
+    return i;
+}
+#endif
+
+}  // namespace
+
+void encode_half(const float* values, std::uint16_t* stored, std::size_t count) {
+    std::size_t done = 0;
+#if defined(__x86_64__)
+    static const bool has_f16c = __builtin_cpu_supports("avx") && __builtin_cpu_supports("f16c");
+    if (has_f16c) done = encode_half_f16c(values, stored, count);
+#endif
+    for (; done < count; ++done) stored[done] = float_to_half(values[done]);
 }
 
 EIKONAL_CLONES void make_finite(float* values, std::size_t count) {
