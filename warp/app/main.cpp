@@ -14,7 +14,6 @@ namespace {
 
 /// Frames are tens of megabytes, allocated and freed at every turn: keep the pages instead of asking for fresh ones.
 void keep_freed_memory() {
-    mallopt(M_ARENA_MAX, 1);  // large blocks can be kept by the main arena only
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, -1);
 }
