@@ -4,6 +4,7 @@
 #include <malloc.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "noise/error.h"
@@ -18,11 +19,8 @@ void keep_freed_memory() {
     mallopt(M_TRIM_THRESHOLD, -1);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
     using namespace eikonal;
-    keep_freed_memory();
     constexpr int kFrameFailed = 1, kWrongUsage = 2;
     try {
         catch_interrupts();
@@ -40,4 +38,14 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "eikonal: internal error, please report it: {}\n", error.what());
         return kFrameFailed;
     }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    keep_freed_memory();
+    const int status = run_program(argc, argv);
+    // Everything of ours is closed. The global destructors of some 250 libraries would only delay the prompt.
+    const bool written = std::fflush(nullptr) == 0;
+    std::_Exit(status == 0 && !written ? 1 : status);
 }
