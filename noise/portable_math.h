@@ -1,7 +1,8 @@
 /// Elementary functions that give the same bits on every x86-64 processor and C library.
 ///
 /// The C library picks fused or unfused code by processor, so its sin, exp or pow may differ in the last bit from one
-/// render node to the next. Whatever reaches a pixel or a random number goes through these instead. They use only
+/// render node to the next. What reaches a pixel goes through these instead (or through the single-precision relatives that
+/// fourier_random.cpp and screen_band.cpp keep for their batches of Gaussians). They use only
 /// + - * / sqrt, conversions and integer operations in a fixed order, hence vectorise under EIKONAL_CLONES without
 /// changing a bit. All are double; NaN in gives NaN out.
 ///

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-.ci/setup
+.ci/setup -DEIKONAL_TESTS=OFF
 
 plate=samples/plate/road.0001.exr
 air=(--scene samples/demo.toml --depth :Z --filter area --frames 1-48)

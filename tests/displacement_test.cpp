@@ -309,16 +309,18 @@ TEST(Displacement, DepthPlanesAgreeWithConstantDepth) {
         for (const DepthMeeting how : {DepthMeeting::Own, DepthMeeting::FixedPoint, DepthMeeting::March})
             EXPECT_LT(difference(constant, map_of(displacer, 1, window, flat, how)), 1e-6 * (1 + rms(constant)));
     }
-    // a ramp, pixel by pixel: X is exact between the layers, whatever they are
-    std::vector<float> metres;
-    for (std::size_t i = 0; i < window.area(); ++i)
-        metres.push_back(0.5f + 399.5f * static_cast<float>(i * 7919 % 6007) / 6007);
-    const DepthPlane ramp(window, metres);
-    const Map map = map_of(displacer, 1, window, ramp, DepthMeeting::Own);
-    for (std::size_t i = 0; i < window.area(); i += 97) {
-        const Map constant = map_of(displacer, 1, window, metres[i]);
-        EXPECT_NEAR(map[2 * i], constant[2 * i], 1e-4) << metres[i];
-        EXPECT_NEAR(map[2 * i + 1], constant[2 * i + 1], 1e-4) << metres[i];
+    // a ramp, pixel by pixel: X is exact between the layers, whatever they are; also where whole slabs lie before it
+    for (const float nearest : {0.5f, 100.0f}) {
+        std::vector<float> metres;
+        for (std::size_t i = 0; i < window.area(); ++i)
+            metres.push_back(nearest + (400 - nearest) * static_cast<float>(i * 7919 % 6007) / 6007);
+        const DepthPlane ramp(window, metres);
+        const Map map = map_of(displacer, 1, window, ramp, DepthMeeting::Own);
+        for (std::size_t i = 0; i < window.area(); i += 97) {
+            const Map constant = map_of(displacer, 1, window, metres[i]);
+            EXPECT_NEAR(map[2 * i], constant[2 * i], 1e-4) << metres[i];
+            EXPECT_NEAR(map[2 * i + 1], constant[2 * i + 1], 1e-4) << metres[i];
+        }
     }
 }
 

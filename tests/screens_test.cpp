@@ -438,8 +438,10 @@ TEST(ScreenLayout, SlabsAreThickerThanTheOuterScaleAndFillThePath) {
         for (double D = 4; D < far; D *= 1.02) EXPECT_NEAR(error(D), 0, kSlabError) << D;
         // patterns that repeat within the view do so at different angles
         for (std::size_t m = 1; m < screens.size(); ++m)
-            if (screens[m].Lx < 0.6 * screens[m].w) EXPECT_GT(std::abs(screens[m].Lx / screens[m].w - screens[m - 1].Lx / screens[m - 1].w),
-                      1e-3 * screens[m].Lx / screens[m].w);
+            if (screens[m].Lx < 0.6 * screens[m].w) {
+                EXPECT_GT(std::abs(screens[m].Lx / screens[m].w - screens[m - 1].Lx / screens[m - 1].w),
+                          1e-3 * screens[m].Lx / screens[m].w);
+            }
     }
 }
 

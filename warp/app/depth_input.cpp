@@ -113,7 +113,7 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
                 const dvec2 s = camera.slope(data.x0 + x + 0.5, data.y0 + y + 0.5);
                 z = static_cast<float>(z / std::sqrt(1 + s.x * s.x + s.y * s.y));
             }
-            z = std::clamp(z, kNearestDepth, far);
+            z = std::max(std::min(z, far), std::min(kNearestDepth, far));
         }
     return {data, std::move(buffer.metres)};
 }

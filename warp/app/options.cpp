@@ -240,7 +240,7 @@ void add_warp(CLI::App& app, WarpOptions& o) {
                    throw UserError(fmt::format("--samples: {} must be a whole number from 1 to 1024", text));
                o.samples = static_cast<int>(n);
            },
-           "instants within the shutter (default 8 with --shutter)")
+           "instants within the shutter (default 9 with --shutter)")
         ->type_name("N");
     add_number(app, "--dispersion", o.dispersion, "X", "colour fringes: 0 off (default), 1 true air", "0 or more",
                not_negative);
@@ -366,7 +366,7 @@ Command parse_options(int argc, const char* const* argv) {
     }
     if (app.got_subcommand("warp")) {
         check(warp.depth);
-        if (warp.shutter > 0 && warp_command->count("--samples") == 0) warp.samples = 8;
+        if (warp.shutter > 0 && warp_command->count("--samples") == 0) warp.samples = 9;  // odd: the middle one is the frame's own
         if (warp.shutter == 0 && warp.samples > 1)
             throw UserError("--samples: has no meaning without --shutter; give --shutter 0.5");
         return warp;

@@ -29,6 +29,8 @@ void guarded(FrameRecord& record, Stage&& stage) {
         record.error = error.what();
     } catch (const std::bad_alloc&) {
         record.error = "not enough memory";
+    } catch (const std::exception& error) {
+        record.error = fmt::format("internal error, please report it: {}", error.what());
     }
 }
 
@@ -86,8 +88,12 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
     const auto finish = [&](FrameItem* raw) {
         const std::unique_ptr<FrameItem> item(raw);
         FrameRecord& record = item->record;
-        if (record.error.empty() && !broken) guarded(record, [&] { stages.finish(*item); });
-        if (!record.error.empty()) {
+        const bool lost = broken && record.error.empty() && stages.in_one_file;
+        if (lost)
+            record.error = "not written, because an earlier frame failed";
+        else if (record.error.empty() && !broken)
+            guarded(record, [&] { stages.finish(*item); });
+        if (!record.error.empty() && !lost) {
             progress.line(fmt::format("eikonal: frame {}: {}", record.frame, record.error));
             if (!options.skip_bad_frames) stop = broken = true;
         }
@@ -105,6 +111,7 @@ void print_outcome(const RunResult& result, const RunOptions& options, std::size
     const auto bad = static_cast<std::size_t>(std::count_if(result.records.begin(), result.records.end(),
                                                             [](const FrameRecord& r) { return !r.error.empty(); }));
     const std::size_t written = result.records.size() - bad;
+    total = std::max(total, result.records.size());  // a movie may hide its length
     if (result.interrupted)
         fmt::print(stderr, "eikonal: interrupted after {} of {} frames; {}\n", written, total, rest);
     else if (bad > 0 && total > 1)

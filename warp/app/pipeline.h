@@ -46,6 +46,7 @@ struct Stages {
     std::function<void(FrameItem&)> work;
     /// In order, one at a time; not called for failed frames. May throw.
     std::function<void(FrameItem&)> finish;
+    bool in_one_file = false;  ///< a movie: a frame after a failed one is not written either
 };
 
 /// frame_bytes: of memory that one frame takes on its way, about. UserError: more than there is.

@@ -39,17 +39,18 @@ Progress::~Progress() {
 
 void Progress::draw(bool last) {
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-    const double left = done_ > 0 ? elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_) : 0;
-    const std::string counts = fmt::format(" {}/{} {}", done_, total_, what_);
+    const bool known = total_ > 0;  // a movie may hide its length
+    const double left = done_ > 0 && known ? elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_) : 0;
+    const std::string counts = known ? fmt::format(" {}/{} {}", done_, total_, what_) : fmt::format(" {} frames", done_);
     const std::string times = last          ? fmt::format(", {}", time_text(elapsed))
-                              : done_ == 0 ? std::string()
+                              : done_ == 0 || !known ? std::string()
                                            : fmt::format(", {} left", time_text(left));
     if (style_ == ProgressStyle::Plain) {
         fmt::print(stderr, "{}{}\n", counts.substr(1), times);
         return;
     }
     const int room = std::clamp(terminal_width() - static_cast<int>(counts.size() + times.size()) - 3, 4, 40);
-    const int filled = total_ > 0 ? static_cast<int>(static_cast<std::size_t>(room) * done_ / total_) : room;
+    const int filled = total_ > 0 ? static_cast<int>(static_cast<std::size_t>(room) * done_ / total_) : 0;
     std::string bar;
     for (int i = 0; i < room; ++i) bar += i < filled ? "█" : "░";
     fmt::print(stderr, "\r\033[K{}{}{}", bar, counts, times);

@@ -92,7 +92,8 @@ Slices noise_slices(const TurbulenceSpec& spec, double t, double exaggeration, d
     return slices;
 }
 
-/// A screen is one slice: n and F averaged over its slab, in the lateral axes of the camera (F.z = 0).
+/// A screen is one slice: n and F averaged over its slab, in the lateral axes of the camera (F.z = 0), at the strength that
+/// it has before any falloff: where a falloff lies on a screen depends on the ray that meets it.
 Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, double exaggeration,
                      double force_factor) {
     const std::array<int, 2> resolution = scene.camera.resolution.value_or(std::array{1920, 1080});

@@ -221,7 +221,8 @@ RunResult warp_frames(const WarpOptions& options, const Footage& footage, const 
     try_companions(footage, shot, frames.empty() ? 1 : frames.front());
     WarpRun warp(options, footage, shot, outputs, frames);
     const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); },
-                        [&](FrameItem& item) { warp.work(item); }, [&](FrameItem& item) { warp.finish(item); }};
+                        [&](FrameItem& item) { warp.work(item); }, [&](FrameItem& item) { warp.finish(item); },
+                        footage_kind(options.output) == FootageKind::Movie};
     const double bytes = static_cast<double>(footage.display.area()) *
                          (kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
     RunResult result = run_pipeline(stages, options.run, frames.size(), threads, bytes);

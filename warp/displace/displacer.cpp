@@ -162,7 +162,7 @@ struct Displacer::Shot {
         const LatticeGeometry geometry = choose_lattice(spec);
         check_lattice(spec, geometry, memory_limit());
         const PathRays rays = nearest_axis(reference, scene.optics.aperture);
-        const bool aligned = 1 - axis_alignment(reference, rays) < kAligned && !path_turns();
+        const bool aligned = 1 - axis_alignment(reference, rays) < kAligned && !camera_moves();
         const bool falloff_across = !spec.falloff || std::abs(spec.falloff->normal[rays.axis]) < 1e-9;
         const bool spectral_applies = !perspective() && aligned && falloff_across;
         Model model = spectral_applies ? Model::Spectral : Model::FirstOrder;
@@ -180,8 +180,12 @@ struct Displacer::Shot {
                                 "across the view, but here {}; use --model first-order or tables",
                                 i,
                                 perspective()                    ? "the camera is perspective"
-                                : why == "asked for" && !aligned ? "the view is oblique"
+                                : camera_moves() ? "the camera moves"
+                                : !aligned       ? "the view is oblique"
                                                                  : "the falloff is along it"));
+            if (model != Model::FirstOrder && !falloff_across)
+                throw UserError(fmt::format("--model {}: the falloff of medium.{} varies along the view, which tables cannot hold; use "
+                                            "--model first-order", name_of(model), i));
             if (model != Model::FirstOrder && axis_alignment(reference, rays) < kLeastAlignment)
                 throw UserError(fmt::format(
                     "--model {}: the view is more than 30 degrees from every lattice axis; use --model first-order",
@@ -228,13 +232,12 @@ struct Displacer::Shot {
             name_of(*settings.model), have));
     }
 
-    /// Whether a .chan path ever leaves the reference axes (checked at the footage's own frames would be endless: a
-    /// path that exists is taken to turn).
-    bool path_turns() const { return path.moving(); }
+    /// A camera with a path is taken to turn: no lattice axis is its view's in every frame.
+    bool camera_moves() const { return path.moving(); }
 
-    static double focusing_of(const Layer& layer, double D) {
+    double focusing_of(const Layer& layer, double D) const {
         const auto* field = std::get_if<ScreenField>(&layer.field);
-        return field ? field->focusing_variance(D) : 0;
+        return field ? field->focusing_variance(D, perspective()) : 0;
     }
 
     const TurbulenceSpec& spec(const Layer& layer) const { return std::get<TurbulenceSpec>(scene.media[layer.medium]); }
@@ -440,7 +443,7 @@ double Displacer::expected_rms(double D) const {
 
 double Displacer::focusing_variance(double D) const {
     double sum = 0;
-    for (const Layer& layer : shot_->layers) sum += shot_->strength * shot_->strength * Shot::focusing_of(layer, D);
+    for (const Layer& layer : shot_->layers) sum += shot_->strength * shot_->strength * shot_->focusing_of(layer, D);
     return sum;
 }
 

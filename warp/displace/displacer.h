@@ -74,7 +74,8 @@ class Displacer {
     /// strength that the media have before any falloff. Gradient noise: estimated from kRmsRays rays.
     double expected_rms(double D) const;
 
-    /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line): near 1 rays fold.
+    /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line) by the thin screens, at the strength
+    /// that they have before any falloff: near 1 rays fold. Lattices and gradient noise are not counted.
     double focusing_variance(double D) const;
 
     /// For --verbose: one line a medium: its model and why, its sizes; and what is left out.

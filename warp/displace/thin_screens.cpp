@@ -236,9 +236,10 @@ std::vector<Band> ScreensInstant::bands(const Camera& camera, double nearest, do
                 if (end > nearest && end < farthest) band.depths.push_back(end);
         std::sort(band.depths.begin(), band.depths.end());
         band.depths.erase(std::unique(band.depths.begin(), band.depths.end()), band.depths.end());
-        // Behind the last slab X is straight.
+        // Behind the last slab X is straight. (One layer alone stands for one depth: it has no slope.)
         const double last = std::max(nearest, active.back().place.far);
-        while (same_axes(camera, reference) && band.depths.size() > 1 && band.depths[band.depths.size() - 2] >= last)
+        while (same_axes(camera, reference) && band.perspective && band.depths.size() > 2 &&
+               band.depths[band.depths.size() - 2] >= last)
             band.depths.pop_back();
         result.push_back(std::move(band));
     }

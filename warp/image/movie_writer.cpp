@@ -281,7 +281,8 @@ MovieFormat sequence_format(const std::filesystem::path& movie, int width, int h
     }
     format.range = CodeRange::Limited;
     format.siting = ChromaSiting::Left;
-    const std::string extension = movie.extension().string();
+    std::string extension = movie.extension().string();
+    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     const bool delivery = extension == ".mp4" || extension == ".m4v" || extension == ".avi";
     const bool intermediate = codec.starts_with("prores") || codec.starts_with("dnx");
     format.depth = intermediate || (deep && !delivery) ? 10 : 8;

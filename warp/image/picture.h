@@ -80,7 +80,7 @@ Picture read_picture_header(const std::filesystem::path& path);
 /// Whether the extension is one of an image format that can be written.
 bool can_write_picture(const std::filesystem::path& path);
 
-/// Writes a picture under a temporary name and renames it when it is whole and on the disk. The format is chosen by the
+/// Writes a picture under a temporary name and renames it when it is whole. The format is chosen by the
 /// extension and must hold the picture (see picture_for_format). FrameError; nothing is left behind on failure.
 void write_picture(const std::filesystem::path& path, const Picture& picture);
 
