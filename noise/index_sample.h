@@ -1,6 +1,7 @@
-/// What every field of refractive index returns at a point: n - n_ambient and its gradient.
+/// What every field of refractive index returns at a point: n - n_ambient and its derivatives.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 namespace eikonal {
@@ -9,6 +10,13 @@ namespace eikonal {
 struct IndexSample {
     double n = 0;
     glm::dvec3 gradient{0, 0, 0};
+};
+
+/// The same with the second derivatives ∂²n/∂x_i∂x_j [1/m²], symmetric.
+struct IndexJet {
+    double n = 0;
+    glm::dvec3 gradient{0, 0, 0};
+    glm::dmat3 hessian{0};
 };
 
 }  // namespace eikonal

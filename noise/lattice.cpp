@@ -137,8 +137,11 @@ LatticeField::LatticeField(const TurbulenceSpec& spec, const LatticeGeometry& ge
                         kLargestRms));
     frequencies_ = spec.alpha > 0 ? geometry_.size[3] / 2 : 0;
     layout();
-    const int qx = geometry_.size[0] / 2 + 1, qy = geometry_.size[1] / 2 + 1;
-    tbb::parallel_for(0, qx * qy, [&](int quadrant) { draw_quadrant(quadrant / qy, quadrant % qy); });
+    const auto qx = static_cast<std::size_t>(geometry_.size[0] / 2 + 1),
+               qy = static_cast<std::size_t>(geometry_.size[1] / 2 + 1);
+    tbb::parallel_for(std::size_t{0}, qx * qy, [&](std::size_t quadrant) {
+        draw_quadrant(static_cast<int>(quadrant / qy), static_cast<int>(quadrant % qy));
+    });
 }
 
 double LatticeField::wavenumber2(int mx, int my, int mz) const {
@@ -191,8 +194,9 @@ void LatticeField::layout() {
 
 const std::uint16_t* LatticeField::first_modes(int ix, int iy) const {
     const int mx = std::abs(signed_index(ix, geometry_.size[0])), my = std::abs(signed_index(iy, geometry_.size[1]));
-    return first_.data() +
-           static_cast<std::size_t>(mx * (geometry_.size[1] / 2 + 1) + my) * static_cast<std::size_t>(frequencies_ + 1);
+    const std::size_t quadrant =
+        static_cast<std::size_t>(mx) * static_cast<std::size_t>(geometry_.size[1] / 2 + 1) + static_cast<std::size_t>(my);
+    return first_.data() + quadrant * static_cast<std::size_t>(frequencies_ + 1);
 }
 
 void LatticeField::draw_quadrant(int mx, int my) {
@@ -211,10 +215,11 @@ void LatticeField::draw_quadrant(int mx, int my) {
         ratio[z] = step[z] * step[z];
     }
     for (int j = 1; j <= row.terms; ++j) {
+        const double* before = weights.data() + n * static_cast<std::size_t>(j - 1);
         double* w = weights.data() + n * static_cast<std::size_t>(j);
         const double count = multiplicity(j);
         for (std::size_t z = 0; z < n; ++z) {
-            w[z] = w[z - n] * step[z];
+            w[z] = before[z] * step[z];
             step[z] *= ratio[z];
             if (z >= first[j]) total[z] += count * w[z];
         }

@@ -74,6 +74,12 @@ void check_lattice(const TurbulenceSpec& spec, const LatticeGeometry& g, std::ui
     if (g.half() > std::numeric_limits<std::uint16_t>::max())
         throw UserError(fmt::format("turbulence: lattice nz = {} is too large; allowed is {} or less", g.size[2],
                                     2 * (std::numeric_limits<std::uint16_t>::max() - 1)));
+    // a row of modes along z and t is counted by an int, and by the 32 bits of a random counter
+    const auto times = static_cast<std::uint64_t>(spec.alpha > 0 ? g.size[3] : 1);
+    if (static_cast<std::uint64_t>(g.half()) * (times + 2) > std::numeric_limits<int>::max())
+        throw UserError(fmt::format(
+            "turbulence: lattice nz = {} times nt = {} is too large; allowed is a product of 2^32 or less", g.size[2],
+            g.size[3]));
     const std::uint64_t bytes = lattice_bytes(spec, g);
     if (bytes > memory_limit)
         throw UserError(

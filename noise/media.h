@@ -16,6 +16,25 @@ namespace eikonal {
 
 using glm::dvec3;
 
+/// physical: F = n∇n (*corrected*, PHYSICS 1). paper: F = ½∇n (*paper*).
+enum class RayEquation { Physical, Paper };
+/// How the index follows from temperature: noise/refractivity.h
+enum class IndexModel { Air, Paper };
+
+/// [optics]: what holds for all media and the lens.
+struct OpticsSpec {
+    RayEquation ray_equation = RayEquation::Physical;
+    double ambient_temperature = 293.15;  ///< [K] > 0
+    IndexModel index = IndexModel::Air;
+    double exaggeration = 1;  ///< multiplies n - n_ambient
+    double aperture = 0;      ///< diameter [m] >= 0; 0 is a point aperture
+};
+
+/// The factor on ∇n that first-order displacement takes: exaggeration, and half of it in the paper's convention.
+inline double force_strength(const OpticsSpec& optics) {
+    return optics.exaggeration * (optics.ray_equation == RayEquation::Paper ? 0.5 : 1.0);
+}
+
 enum class SpectrumKind { VonKarman, Paper };
 enum class TurbulenceForm { Lattice, Screens, GradientNoise };
 
@@ -30,13 +49,13 @@ struct Falloff {
 struct TurbulenceSpec {
     std::uint64_t seed = 1;
     SpectrumKind spectrum = SpectrumKind::VonKarman;
-    double cn2 = 1e-13;               ///< Cn² [m^-2/3] >= 0 (von Kármán)
-    double outer_scale = 1.0;         ///< L0 [m] > inner_scale
-    double inner_scale = 0.005;       ///< l0 [m] > 0
-    double strength = 1e-12;          ///< C of S(k) = C k^(-11/3), <n'²> = ∫ S d³k (paper) >= 0
-    double lowest_wavenumber = 2;     ///< k_m, cycles per lattice period (paper) >= 0
-    double alpha = 0.01;              ///< [m²/s²] >= 0; 0 is frozen
-    dvec3 velocity{0, 0, 0};          ///< mean motion [m/s]
+    double cn2 = 1e-13;            ///< Cn² [m^-2/3] >= 0 (von Kármán)
+    double outer_scale = 1.0;      ///< L0 [m] > inner_scale
+    double inner_scale = 0.005;    ///< l0 [m] > 0
+    double strength = 1e-12;       ///< C of S(k) = C k^(-11/3), <n'²> = ∫ S d³k (paper) >= 0
+    double lowest_wavenumber = 2;  ///< k_m, cycles per lattice period (paper) >= 0
+    double alpha = 0.01;           ///< [m²/s²] >= 0; 0 is frozen
+    dvec3 velocity{0, 0, 0};       ///< mean motion [m/s]
     TurbulenceForm form = TurbulenceForm::Screens;
     std::optional<Falloff> falloff;
     std::optional<std::array<int, 4>> lattice;    ///< nx, ny, nz, nt; left out: chosen from camera, depth and scales
@@ -54,7 +73,7 @@ struct SurfaceSpec {
 /// One explicit hot blob.
 struct BlobSpec {
     dvec3 center{0, 0, 0};
-    double sigma = 0.1;        ///< [m] > 0
+    double sigma = 0.1;         ///< [m] > 0
     double temperature = 1000;  ///< [K] > 0
 };
 
@@ -64,16 +83,17 @@ struct BlobSourceSpec {
     double rate = 10;           ///< blobs a second >= 0
     double temperature = 1000;  ///< at birth [K] > 0
     double sigma = 0.1;         ///< [m] > 0
-    double cooling = 1;         ///< 1/s >= 0
+    double cooling = 1;         ///< rate at which T - T_ambient decays [1/s] >= 0
+    double growth = 0;          ///< diffusion: σ² grows by this every second [m²/s] >= 0
     double lifetime = 5;        ///< [s] > 0
 };
 
 /// The turbulent wind that carries blobs.
 struct WindSpec {
     std::uint64_t seed = 1;
-    double rms = 0.5;          ///< of each velocity component [m/s] >= 0
-    double outer_scale = 1;    ///< [m] > 0
-    dvec3 rise{0, 1, 0};       ///< mean velocity [m/s]
+    double rms = 0.5;        ///< of each velocity component [m/s] >= 0
+    double outer_scale = 1;  ///< [m] > 0
+    dvec3 rise{0, 1, 0};     ///< mean velocity [m/s]
 };
 
 /// [[medium]] type="blobs" (PHYSICS 4)

@@ -67,9 +67,6 @@ class PeriodicSpline2 {
     /// values[i] += weight · value at (x0 + i step_x, y0 + i step_y), i < n: any line.
     void add_values(double x0, double y0, double step_x, double step_y, int n, float weight, float* values) const;
 
-    /// Bytes held.
-    std::size_t bytes() const { return coefficients_.size() * sizeof(float); }
-
   private:
     struct Line;
     /// The taps along y collapsed at one y: the value for each coefficient along x, then ∂/∂v.

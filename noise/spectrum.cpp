@@ -1,16 +1,14 @@
 #include "noise/spectrum.h"
 
-#include <limits>
-
 #include "noise/portable_math.h"
 
 namespace eikonal {
 
 Spectrum::Spectrum(const TurbulenceSpec& spec, double lowest) : kind_(spec.spectrum), lowest2_(lowest * lowest) {
     const double k0 = portable::kTwoPi / spec.outer_scale;
-    km_ = kInnerScaleConstant / spec.inner_scale;
+    const double km = kInnerScaleConstant / spec.inner_scale;
     k02_ = k0 * k0;
-    inv_km2_ = 1 / (km_ * km_);
+    inv_km2_ = 1 / (km * km);
     scale_ = kind_ == SpectrumKind::VonKarman ? kKolmogorovConstant * spec.cn2 : spec.strength;
 }
 
@@ -19,13 +17,6 @@ double Spectrum::operator()(double k2) const {
         return scale_ * portable::exp(-k2 * inv_km2_ - (11.0 / 6) * portable::log(k2 + k02_));
     if (k2 <= 0 || k2 < lowest2_ * (1 - 1e-12)) return 0;
     return scale_ * portable::exp(-(11.0 / 6) * portable::log(k2));
-}
-
-double Spectrum::amplitude(double k2) const { return std::sqrt((*this)(k2)); }
-
-double Spectrum::highest_useful() const {
-    // k^2 k^(-11/3) exp(-k²/km²) at k = 2 km: 2^(-5/3) e^-4 ~ 0.6 % of the value at km, 1e-4 of the peak variance density
-    return kind_ == SpectrumKind::VonKarman ? 2 * km_ : std::numeric_limits<double>::infinity();
 }
 
 double temporal_weight(double kappa, double alpha, double k2) {

@@ -21,16 +21,9 @@ class Spectrum {
     /// Φ(k) [m³] from k² [rad²/m²]. Finite for every k² >= 0 (0 at k = 0 for the paper's).
     double operator()(double k2) const;
 
-    /// √Φ for the amplitude of a mode.
-    double amplitude(double k2) const;
-
-    /// Largest wavenumber that carries energy worth a sample: beyond it the gradient spectrum k²Φ is < 1e-4 of its peak
-    /// (von Kármán); infinity for the paper's.
-    double highest_useful() const;
-
   private:
     SpectrumKind kind_;
-    double scale_, k02_, inv_km2_, lowest2_, km_;
+    double scale_, k02_, inv_km2_, lowest2_;
 };
 
 /// Cn² for which 0.0330054 is the Kolmogorov constant: Γ(8/3) sin(π/3) / (4π²).

@@ -261,7 +261,7 @@ TEST(Lattice, SpectrumIsHermitian) {
 }
 
 TEST(Lattice, WholePeriodEqualsItsInstants) {
-    for (const auto& g : {box(8, 6, 10, 4), box(5, 7, 3, 5), box(4, 4, 4, 1), box(3, 2, 5, 2)})
+    for (const auto& g : {box(8, 6, 10, 4), box(5, 7, 3, 5), box(4, 4, 4, 1), box(3, 2, 5, 2), box(3, 2, 501, 31)})
         for (const double alpha : {0.0, 1e-3, 0.5, 1e12}) {
             const LatticeField field(air(5, alpha), g);
             PeriodSynthesis synthesis(field);
@@ -403,6 +403,10 @@ TEST(LatticeGeometry, RefusesTheImpossibleBeforeAllocating) {
     EXPECT_NE(message(box(4, -4, 4, 1), kLimit).find("ny = -4"), std::string::npos);
     EXPECT_NE(message(box(1024, 1024, 1024, 64), kLimit).find("GB"), std::string::npos);
     EXPECT_NE(message(box(60000, 60000, 60000, 2000000000), kLimit).find("GB"), std::string::npos);
+    // a single row that no int counts, however much memory there is
+    EXPECT_NE(message(box(2, 2, 131068, 70000), ~std::uint64_t{0}).find("nz = 131068 times nt = 70000"),
+              std::string::npos);
+    EXPECT_EQ(message(box(2, 2, 131068, 30000), ~std::uint64_t{0}), "");
     LatticeGeometry g = box(4, 4, 4, 4);
     g.period[2] = 0;
     EXPECT_NE(message(g, kLimit).find("period z"), std::string::npos);

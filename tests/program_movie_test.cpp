@@ -106,6 +106,27 @@ TEST_F(MovieTest, StillsAndSequences) {
     EXPECT_EQ(facts("deep.mov").pixels, "yuv420p10le") << "float pictures are not cut to 8 bits";
 }
 
+// The first frame tells a movie's size, but its damage is no more than any other's.
+TEST_F(MovieTest, DamagedFirstFrame) {
+    make_clip("a.mkv", {"-c:v", "ffv1", "-level", "3", "-slicecrc", "1", "-pix_fmt", "yuv420p", "-an"});
+    std::string data = bytes("a.mkv");
+    const std::size_t first = data.find("\x1f\x43\xb6\x75") + 200;  // within Matroska's first cluster
+    for (std::size_t i = first; i < first + 40; ++i) data[i] = static_cast<char>(~data[i]);
+    write_text("a.mkv", data);
+    const Ended stopped = warp("a.mkv", "b.mkv");
+    EXPECT_EQ(stopped.status, 1);
+    EXPECT_NE(stopped.err.find("frame 1: "), std::string::npos) << stopped.err;
+    EXPECT_NE(stopped.err.find("--skip-bad-frames"), std::string::npos) << stopped.err;
+    EXPECT_FALSE(fs::exists(path("b.mkv")));
+    for (const char* out : {"b.mkv", "s.####.png"}) {
+        const Ended skipped = warp("a.mkv", out, {"--skip-bad-frames"});
+        EXPECT_EQ(skipped.status, 1);
+        EXPECT_NE(skipped.err.find("11 of 12 frames done"), std::string::npos) << skipped.err;
+    }
+    EXPECT_EQ(facts("b.mkv").frames, "11");
+    EXPECT_TRUE(fs::exists(path("s.0002.png")) && fs::exists(path("s.0012.png")) && !fs::exists(path("s.0001.png")));
+}
+
 TEST_F(MovieTest, Refusals) {
     make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
     fs::create_symlink("a.mp4", path("link.mp4"));

@@ -96,7 +96,7 @@ struct Displacer::Shot {
           settings(set),
           path(s.camera, set.width, set.height, set.pixel_aspect, set.fov),
           reference(path.reference()),
-          strength(s.optics.exaggeration * (s.optics.ray_equation == RayEquation::Paper ? 0.5 : 1.0)) {
+          strength(force_strength(s.optics)) {
         for (std::size_t i = 0; i < scene.media.size(); ++i) add_medium(i);
         if (settings.model && !layers.empty() &&
             std::none_of(layers.begin(), layers.end(), [&](const Layer& l) { return l.model == *settings.model; }))

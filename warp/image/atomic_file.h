@@ -26,7 +26,6 @@ class AtomicFile {
     ~AtomicFile();
 
     const std::filesystem::path& temporary() const { return temporary_; }
-    const std::filesystem::path& final_path() const { return final_; }
 
     /// Renames the temporary, which must be closed, to the final name, replacing what was there.
     /// FrameError if it is missing or empty (nothing was written: a full disk) or cannot be renamed.

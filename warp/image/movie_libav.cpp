@@ -25,7 +25,8 @@ thread_local std::string last_message;
 
 void keep_message(void* object, int level, const char* format, va_list arguments) {
     if (level > AV_LOG_ERROR) return;
-    if (object && (*static_cast<const AVClass**>(object))->class_name == std::string_view("AVCodecContext"))
+    const AVClass* what = object ? *static_cast<const AVClass**>(object) : nullptr;
+    if (what && what->class_name && what->class_name == std::string_view("AVCodecContext"))
         if (auto* seen = static_cast<std::atomic<bool>*>(static_cast<AVCodecContext*>(object)->opaque)) *seen = true;
     std::array<char, 512> line{};
     int prefix = 0;

@@ -11,6 +11,9 @@ extern "C" {
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <deque>
+#include <set>
+#include <utility>
 
 #include "noise/error.h"
 #include "warp/image/movie_libav.h"
@@ -51,16 +54,19 @@ struct MovieReader::State {
     libav::Codec decoder;
     AVStream* stream = nullptr;
     libav::Frame picture = libav::make_frame();
-    libav::Packet packet = libav::make_packet();
+    libav::Packet packet = libav::make_packet(), ahead = libav::make_packet();
     MovieFormat format;
     std::atomic<bool> complained = false;  ///< the decoder told of an error
     bool pending = false;                  ///< `picture` is decoded and not yet handed out
-    bool draining = false;                 ///< the file is at its end
-    bool finished = false;                 ///< so is the decoder
+    bool looked_ahead = false;             ///< `ahead` holds the packet after the last one sent
+    bool finished = false;                 ///< file and decoder are at their end
     bool interlaced = false;
     int number = 0;             ///< of the last frame decoded
     std::int64_t next_pts = 0;  ///< for frames without time stamps
     std::int64_t end_pts = 0;   ///< largest end of a frame so far
+    std::deque<FrameError> early;  ///< of the damaged frames before the first whole one, not yet told
+    std::set<std::pair<std::int64_t, std::int64_t>> incomplete;  ///< position and pts of packets that lack data
+    std::string read_error;                                      ///< why the file ended before its end
 
     explicit State(std::filesystem::path file) : path(std::move(file)) { open(); }
 
@@ -94,10 +100,23 @@ struct MovieReader::State {
             throw FrameError(
                 fmt::format("{}: cannot decode {}: {}", path.string(), codec->name, libav::reason(opened)));
 
-        if (!decode()) throw FrameError(fmt::format("{}: holds no frame that can be decoded", path.string()));
-        pending = true;
+        find_first();
         format = format_of(*picture);
         interlaced = picture->interlaced_frame != 0;
+    }
+
+    /// Decodes the first whole frame; the errors of those before it wait for their turn.
+    void find_first() {
+        while (!pending) {
+            try {
+                pending = decode();
+            } catch (const FrameError& damage) {
+                early.push_back(damage);
+            }
+            if (pending || !finished) continue;
+            if (!early.empty()) throw early.front();
+            throw FrameError(fmt::format("{}: holds no frame that can be decoded", path.string()));
+        }
     }
 
     MovieFormat format_of(const AVFrame& frame) const {
@@ -124,8 +143,9 @@ struct MovieReader::State {
             const int received = avcodec_receive_frame(decoder.get(), picture.get());
             if (received == 0) {
                 ++number;
+                const bool whole = incomplete.erase({picture->pkt_pos, picture->pts}) == 0;
                 stamp();
-                return check_picture();
+                return check_picture(whole);
             }
             if (received == AVERROR_EOF) {
                 finished = true;
@@ -144,25 +164,36 @@ struct MovieReader::State {
         throw error(number, fmt::format("the stream is damaged: {}", libav::reason(code)));
     }
 
-    /// Gives the decoder one more packet of the stream, or the sign that there is none.
-    void feed() {
+    /// Reads the stream's next packet; false at the end of what can be read.
+    bool read(AVPacket& into) {
         while (true) {
-            const int read = av_read_frame(input.get(), packet.get());
-            if (read == AVERROR(EAGAIN)) continue;
-            if (read < 0) {
-                draining = true;
-                avcodec_send_packet(decoder.get(), nullptr);
-                if (read != AVERROR_EOF) read_error = libav::reason(read);
-                return;
-            }
-            const bool wanted = packet->stream_index == stream->index;
-            const bool corrupt = packet->flags & AV_PKT_FLAG_CORRUPT;
-            if (wanted && corrupt) read_error = "the last data are incomplete";
-            const int sent = wanted && !corrupt ? avcodec_send_packet(decoder.get(), packet.get()) : 0;
-            av_packet_unref(packet.get());
-            if (sent < 0 && sent != AVERROR(EAGAIN) && sent != AVERROR_EOF) damaged(sent);
-            if (wanted) return;
+            av_packet_unref(&into);
+            const int code = av_read_frame(input.get(), &into);
+            if (code == 0 && into.stream_index == stream->index) return true;
+            if (code == 0 || code == AVERROR(EAGAIN)) continue;
+            if (code != AVERROR_EOF) read_error = libav::reason(code);
+            return false;
         }
+    }
+
+    /// Gives the decoder one more packet of the stream, or the sign that there is none. An incomplete packet is a
+    /// damaged frame if others follow, and else the end of a movie that is cut off.
+    void feed() {
+        bool there = true;
+        if (std::exchange(looked_ahead, false))
+            av_packet_move_ref(packet.get(), ahead.get());
+        else
+            there = read(*packet);
+        if (there && packet->flags & AV_PKT_FLAG_CORRUPT) {
+            there = looked_ahead = read(*ahead);
+            if (there)
+                incomplete.emplace(packet->pos, packet->pts);
+            else if (read_error.empty())
+                read_error = "the last data are incomplete";
+        }
+        const int sent = avcodec_send_packet(decoder.get(), there ? packet.get() : nullptr);
+        av_packet_unref(packet.get());
+        if (sent < 0 && sent != AVERROR(EAGAIN) && sent != AVERROR_EOF) damaged(sent);
     }
 
     void stamp() {
@@ -173,11 +204,11 @@ struct MovieReader::State {
         end_pts = std::max(end_pts, next_pts);
     }
 
-    bool check_picture() {
+    bool check_picture(bool whole) {
         constexpr int kConcealed =
             FF_DECODE_ERROR_INVALID_BITSTREAM | FF_DECODE_ERROR_CONCEALMENT_ACTIVE | FF_DECODE_ERROR_DECODE_SLICES;
         if (picture->decode_error_flags & kConcealed || picture->flags & AV_FRAME_FLAG_CORRUPT ||
-            complained.exchange(false))
+            complained.exchange(false) || !whole)
             throw error(number, "its data are damaged; the decoder could only guess the picture");
         if (format.width == 0) return true;
         const MovieFormat now = format_of(*picture);
@@ -224,8 +255,6 @@ struct MovieReader::State {
         ++number;
         throw error(number, what + "; copy it again or choose fewer frames");
     }
-
-    std::string read_error;
 };
 
 MovieReader::MovieReader(std::filesystem::path path) : state_(std::make_unique<State>(std::move(path))) {}
@@ -251,11 +280,8 @@ int MovieReader::rotation() const {
 bool MovieReader::interlaced() const {
     return state_->interlaced;
 }
-std::string MovieReader::codec() const {
-    return avcodec_get_name(state_->stream->codecpar->codec_id);
-}
 int MovieReader::next_number() const {
-    return state_->pending ? state_->number : state_->number + 1;
+    return state_->pending ? state_->number - static_cast<int>(state_->early.size()) : state_->number + 1;
 }
 
 std::optional<std::int64_t> MovieReader::frame_count() const {
@@ -267,6 +293,11 @@ std::optional<std::int64_t> MovieReader::frame_count() const {
 
 bool MovieReader::next(MovieFrame& frame) {
     State& state = *state_;
+    if (!state.early.empty()) {
+        const FrameError damage = state.early.front();
+        state.early.pop_front();
+        throw damage;
+    }
     if (!state.pending && !state.decode()) return false;
     state.pending = false;
     frame.format = state.format;
@@ -279,10 +310,11 @@ bool MovieReader::next(MovieFrame& frame) {
 
 bool MovieReader::skip() {
     State& state = *state_;
-    if (state.pending) {
-        state.pending = false;
+    if (!state.early.empty()) {
+        state.early.pop_front();
         return true;
     }
+    if (std::exchange(state.pending, false)) return true;
     try {
         return state.decode();
     } catch (const FrameError&) {

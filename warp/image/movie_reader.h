@@ -28,7 +28,8 @@ struct Rational {
 
 class MovieReader {
   public:
-    /// Opens the movie and decodes its first frame, so that every property is known.
+    /// Opens the movie and decodes up to its first whole frame, so that every property is known; the errors of damaged
+    /// ones before it come from next().
     explicit MovieReader(std::filesystem::path path);
     MovieReader(MovieReader&&) noexcept;
     MovieReader& operator=(MovieReader&&) noexcept;
@@ -46,8 +47,6 @@ class MovieReader {
     /// Degrees clockwise by which players turn the picture: 0, 90, 180 or 270.
     int rotation() const;
     bool interlaced() const;
-    /// libav's name of the codec, e.g. "h264".
-    std::string codec() const;
 
     /// The next frame; false at the end. After an error the frame counts as read: calling again goes on with the next.
     bool next(MovieFrame& frame);

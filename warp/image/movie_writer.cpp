@@ -315,8 +315,5 @@ void MovieWriter::write(const MovieFrame& frame) {
 void MovieWriter::finish() {
     state_->finish();
 }
-std::string MovieWriter::encoder() const {
-    return state_->encoder.context->codec->name;
-}
 
 }  // namespace eikonal

@@ -62,8 +62,6 @@ class MovieWriter {
     void write(const MovieFrame& frame);
     /// Flushes, closes and gives the file its name. Nothing may be written afterwards.
     void finish();
-    /// libav's name of the encoder in use.
-    std::string encoder() const;
 
   private:
     struct State;

@@ -47,7 +47,6 @@ class TransferCurve {
     /// The one instance of a transfer, made at first use.
     static const TransferCurve& of(Transfer transfer);
 
-    Transfer transfer() const { return transfer_; }
     bool linear() const { return transfer_ == Transfer::Linear; }
 
     float to_linear(float code) const {

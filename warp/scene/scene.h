@@ -55,18 +55,6 @@ struct TimeSpec {
     int first_frame = 1;        ///< the frame at t = 0
 };
 
-enum class RayEquation { Physical, Paper };
-enum class IndexModel { Air, Paper };
-
-/// [optics]
-struct OpticsSpec {
-    RayEquation ray_equation = RayEquation::Physical;
-    double ambient_temperature = 293.15;  ///< [K] > 0
-    IndexModel index = IndexModel::Air;
-    double exaggeration = 1;  ///< multiplies n - n_ambient
-    double aperture = 0;      ///< diameter [m] >= 0; 0 is a point aperture
-};
-
 /// [plate]: what is known of footage that comes without a depth map. Options on the command line override it.
 struct PlateSpec {
     std::optional<double> distance;  ///< constant distance along the axis [m] > 0; excludes ground

@@ -222,6 +222,7 @@ static Keys keys(BlobSourceSpec& s) {
         {"from", "one end of the source [m]", s.from},     {"to", "its other end [m]", s.to},
         {"rate", "blobs a second", s.rate, {at_least(0)}}, {"temperature", "at birth [K]", s.temperature, {positive()}},
         {"sigma", "radius [m]", s.sigma, {positive()}},    {"cooling", "[1/s]", s.cooling, {at_least(0)}},
+        {"growth", "of sigma squared, by diffusion [m²/s]", s.growth, {at_least(0)}},
         {"lifetime", "[s]", s.lifetime, {positive()}},
     };
 }
