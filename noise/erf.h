@@ -17,7 +17,7 @@ namespace eikonal::portable {
 
 inline constexpr double kGaussianTailsError = 4e-15;
 inline constexpr double kGaussianTailsLimit = 1e100;
-inline constexpr double kSqrtPi = 1.772453850905516027298167483341145183;
+inline constexpr long double kSqrtPi = 1.772453850905516027298167483341145183L;
 
 struct GaussianTails {
     double area, moment;

@@ -1,16 +1,21 @@
 /// The refractive index of a whole scene: the sum of its media, frozen at one time, as a tracer follows it.
 ///
-/// Index at x: 1 + ambient() + exaggeration Σ (n_i - n_ambient). A profile medium gives the absolute index and stands
-/// alone, with nothing exaggerated. Ray equation d²x/du² = F (PHYSICS 1):
+/// Index at x: n_ambient + exaggeration Σ (n_i - n_ambient), the ambient's that of IndexLaw (noise/refractivity.h). A
+/// profile medium gives the absolute index and stands alone, with nothing exaggerated. Ray equation d²x/du² = F
+/// (PHYSICS 1):
 ///     physical:  F = n∇n,  |dx/du| = n       (*corrected*)
 ///     paper:     F = ½∇n,  |dx/du| = √n      (*paper*: its "n" is the index squared)
-/// All double; positions in world metres. FieldInstant is immutable and thread-safe and must not outlive its Field.
+/// All double; positions in world metres. FieldInstant is immutable and thread-safe, and may outlive its Field.
 ///
 /// Thin screens (form = "screens") are not a function of position: the bend of a slab is spread evenly over it
 /// (noise/screen_layout.h) and taken at the point where the ray's tangent meets the screen,
-///     F⊥ = √L ∇⊥ψ_m(x⊥ + (w_m - z) p⊥/p_z)/δ,   L = |p|/p_z,   near_m < z < far_m,
-/// z the depth along the frame's axis, with no force along the axis: the same air that the warp bends rays by, *added*.
-/// They have no index of their own: |dx/du|² = n² holds for every other medium only.
+///     F⊥ = ∇⊥ψ_m(x⊥ + (w_m - z) p⊥/p_z)/(√L δ),   L = |p|/p_z,   near_m < z < far_m,
+/// z the depth along the frame's axis, with no force along the axis: the same air that the warp bends rays by, *added*
+/// (noise/screen_force.h). They have no index of their own: |dx/du|² = n² holds for every other medium only.
+///
+/// Lattices are cubic splines through their trigonometric sum at the exact time, so F has continuous derivatives; it is
+/// off the sum's F by Field::interpolation_error, at most kInterpolationError where memory permits. Media of no
+/// strength are left out. Where n <= 0 there is no force but the screens'.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +42,8 @@ struct ForceJet {
     glm::dmat3 by_direction{0};  ///< ∂F_i/∂p_j at [j][i]: thin screens only
 };
 
-/// n - n_ambient of a medium below this is nothing: what bounds are drawn by, in parts of its own largest.
-inline constexpr double kNegligibleIndex = 1e-16;
+/// Rms error of a lattice's F between its nodes, relative to the rms F, that its splines are padded for.
+inline constexpr double kInterpolationError = 1e-3;
 
 class FieldInstant {
   public:
@@ -54,12 +59,17 @@ class FieldInstant {
     /// The longest step [m] from x, in any direction, that misses nothing: a part of the smallest feature that may be
     /// met on it (blob σ, inner scale or cell, dropoff, radius of a profile), plus the way to it. > 0, may be infinite.
     double longest_step(const dvec3& x) const;
+    /// The same along the unit direction d of a ray: much longer over a surface, along which little changes. (Bending
+    /// by other media is taken for small within a step, which their own features bound.)
+    double longest_step(const dvec3& x, const dvec3& d) const;
     /// Length of the way from x along the unit direction d that lies outside the bounds of every medium, hence is
-    /// straight: 0 inside one; infinity if none is ever met.
+    /// straight: 0 inside one; infinity if none is ever met. A lattice or gradient noise has no bounds but those of a
+    /// falloff, which ends at g = kNegligibleIndex upward and nowhere downward.
     double clear_way(const dvec3& x, const dvec3& d) const;
     /// Length of the way from x along the unit direction d to the next place where F jumps (a thin screen's end, the
     /// start of a falloff, the edge of a surface or of a profile): steps must end there to keep their order. Infinity
-    /// if there is none.
+    /// if there is none; > 0, however small, if x is short of it by rounding. To keep a step's last stages on this
+    /// side, end it a hair before the edge (1e-9 of the way) and cross two hairs straight.
     double way_to_edge(const dvec3& x, const dvec3& d) const;
 
     FieldInstant(FieldInstant&&) noexcept;
@@ -74,7 +84,8 @@ class FieldInstant {
 
 class Field {
   public:
-    /// frame: needed for media of form "screens". memory_limit [bytes]: what all of them may take.
+    /// frame: needed for media of form "screens" (std::logic_error without). memory_limit [bytes]: what all of them may
+    /// take, one instant included.
     /// UserError, naming "medium.N": a profile beside other media, what a medium's own header refuses.
     Field(const std::vector<MediumSpec>& media, const OpticsSpec& optics, const std::optional<ScreenFrame>& frame,
           std::uint64_t memory_limit);
@@ -87,9 +98,12 @@ class Field {
     /// Whether any medium can bend anything: false for an empty scene or one whose media have no strength.
     bool bends() const;
 
+    /// Expected rms error of F by interpolation in the worst lattice, relative to its rms F; 0 without lattices.
+    double interpolation_error() const;
+
   private:
     struct State;
-    std::unique_ptr<State> state_;
+    std::shared_ptr<State> state_;
 };
 
 }  // namespace eikonal

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "noise/error.h"
 #include "noise/lattice_snapshot.h"
@@ -41,27 +42,29 @@ std::array<dvec3, 3> random_rotation(const RandomStream& stream) {
             dvec3{2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
 }
 
-/// Cell and offset within it of one coordinate, and the fade there with its derivative.
+/// Cell and offset within it of one coordinate, and the fade there with its derivatives.
 struct Coordinate {
     std::int64_t cell;
-    double t, fade, slope;
+    double t, fade, slope, curvature;
 };
 
 Coordinate locate(double u) {
     if (!(std::abs(u) < 0x1p52)) u = std::fmod(u, 0x1p52);
     const double whole = std::floor(u), t = u - whole;
-    return {static_cast<std::int64_t>(whole), t, t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (t - 1) * (t - 1)};
+    return {static_cast<std::int64_t>(whole), t, t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (t - 1) * (t - 1),
+            60 * t * (t - 1) * (2 * t - 1)};
 }
 
-/// N and its gradient in the first three coordinates, in cells.
-IndexSample noise4(const std::array<double, 4>& u, std::uint64_t key) {
+/// N, its gradient and, if `second`, its Hessian in the first three coordinates, in cells.
+template <bool second>
+IndexJet noise4(const std::array<double, 4>& u, std::uint64_t key) {
     constexpr std::array<std::uint64_t, 4> kPrime{0x9e3779b97f4a7c15ULL, 0xc2b2ae3d27d4eb4fULL, 0x165667b19e3779f9ULL,
                                                   0xd6e8feb86659fd93ULL};
     std::array<Coordinate, 4> c;
     for (std::size_t i = 0; i < 4; ++i) c[i] = locate(u[i]);
-    IndexSample sum{0, {0, 0, 0}};
+    IndexJet sum;
     for (unsigned corner = 0; corner < 16; ++corner) {
-        std::array<double, 4> d, w, dw;
+        std::array<double, 4> d, w, dw, ddw;
         std::uint64_t h = key;
         for (std::size_t i = 0; i < 4; ++i) {
             const unsigned far = (corner >> i) & 1U;
@@ -69,6 +72,7 @@ IndexSample noise4(const std::array<double, 4>& u, std::uint64_t key) {
             d[i] = c[i].t - far;
             w[i] = far ? c[i].fade : 1 - c[i].fade;
             dw[i] = far ? c[i].slope : -c[i].slope;
+            ddw[i] = far ? c[i].curvature : -c[i].curvature;
         }
         // One of 32 gradients: three components ±1, the fourth 0.
         const std::uint64_t bits = mix64(h);
@@ -81,6 +85,14 @@ IndexSample noise4(const std::array<double, 4>& u, std::uint64_t key) {
         sum.gradient.x += weight * g[0] + dw[0] * w[1] * w23 * ramp;
         sum.gradient.y += weight * g[1] + w[0] * dw[1] * w23 * ramp;
         sum.gradient.z += weight * g[2] + w01 * dw[2] * w[3] * ramp;
+        if constexpr (second) {
+            // ∂a∂b (weight ramp), the ramp being linear
+            const dvec3 slope(dw[0] * w[1] * w23, w[0] * dw[1] * w23, w01 * dw[2] * w[3]), ramps(g[0], g[1], g[2]);
+            const double xy = dw[0] * dw[1] * w23, xz = dw[0] * w[1] * dw[2] * w[3], yz = w[0] * dw[1] * dw[2] * w[3];
+            const glm::dmat3 weights(ddw[0] * w[1] * w23, xy, xz, xy, w[0] * ddw[1] * w23, yz, xz, yz,
+                                     w01 * ddw[2] * w[3]);
+            sum.hessian += weights * ramp + glm::outerProduct(slope, ramps) + glm::outerProduct(ramps, slope);
+        }
     }
     return sum;
 }
@@ -110,24 +122,37 @@ GradientNoiseField::GradientNoiseField(const TurbulenceSpec& spec) : velocity_(s
         o.key = stream.bits(6);
         power += o.amplitude * o.amplitude * kGradientNoiseVariance;
         octaves_.push_back(o);
+        smallest_cell_ = s;
     }
     for (Octave& o : octaves_) o.amplitude *= std::sqrt(variance_ / power);
 }
 
-IndexSample GradientNoiseField::sample(const dvec3& x, double t) const {
+template <bool second>
+IndexJet GradientNoiseField::sum(const dvec3& x, double t) const {
     const dvec3 p = x - velocity_ * t;
-    IndexSample sum{0, {0, 0, 0}};
+    IndexJet sum;
     for (const Octave& o : octaves_) {
         std::array<double, 4> u;
         for (std::size_t i = 0; i < 3; ++i) u[i] = glm::dot(o.rows[i], p) + o.offset[i];
         u[3] = o.rate * t + o.offset[3];
-        const IndexSample s = noise4(u, o.key);
+        const IndexJet s = noise4<second>(u, o.key);
         sum.n += o.amplitude * s.n;
         sum.gradient += o.amplitude * (s.gradient.x * o.rows[0] + s.gradient.y * o.rows[1] + s.gradient.z * o.rows[2]);
+        if constexpr (second) {
+            const glm::dmat3 turn(o.rows[0], o.rows[1], o.rows[2]);  // columns: ∂u_i/∂x
+            sum.hessian += o.amplitude * (turn * s.hessian * glm::transpose(turn));
+        }
     }
-    if (!falloff_) return sum;
-    const IndexSample g = falloff_at(*falloff_, x);
-    return {g.n * sum.n, g.n * sum.gradient + sum.n * g.gradient};
+    return sum;
+}
+
+IndexSample GradientNoiseField::sample(const dvec3& x, double t) const {
+    const IndexJet s = sum<false>(x, t);
+    return with_falloff(falloff_, x, IndexSample{s.n, s.gradient});
+}
+
+IndexJet GradientNoiseField::jet(const dvec3& x, double t) const {
+    return with_falloff(falloff_, x, sum<true>(x, t));
 }
 
 }  // namespace eikonal

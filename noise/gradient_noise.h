@@ -40,11 +40,21 @@ class GradientNoiseField {
 
     /// n - n_ambient and ∇n [1/m] at x [m] and t [s].
     IndexSample sample(const dvec3& x, double t) const;
+    /// With the Hessian [1/m²], continuous.
+    IndexJet jet(const dvec3& x, double t) const;
+
+    const std::optional<Falloff>& falloff() const { return falloff_; }
+    /// s_o of the finest octave [m].
+    double smallest_cell() const { return smallest_cell_; }
 
     /// ∫Φ d³k, without falloff.
     double variance() const { return variance_; }
 
   private:
+    /// Without falloff.
+    template <bool second>
+    IndexJet sum(const dvec3& x, double t) const;
+
     struct Octave {
         std::array<dvec3, 3> rows;  // R_o/s_o [1/m]
         std::array<double, 4> offset;
@@ -55,7 +65,7 @@ class GradientNoiseField {
     std::vector<Octave> octaves_;
     dvec3 velocity_;
     std::optional<Falloff> falloff_;
-    double variance_ = 0;
+    double variance_ = 0, smallest_cell_ = 0;
 };
 
 }  // namespace eikonal

@@ -6,6 +6,9 @@
 
 namespace eikonal {
 
+/// n - n_ambient of a medium below this is nothing: what bounds are drawn by, in parts of its own largest.
+inline constexpr double kNegligibleIndex = 1e-16;
+
 /// Index above ambient (dimensionless) and its gradient [1/m], world axes.
 struct IndexSample {
     double n = 0;

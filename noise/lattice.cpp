@@ -194,8 +194,8 @@ void LatticeField::layout() {
 
 const std::uint16_t* LatticeField::first_modes(int ix, int iy) const {
     const int mx = std::abs(signed_index(ix, geometry_.size[0])), my = std::abs(signed_index(iy, geometry_.size[1]));
-    const std::size_t quadrant =
-        static_cast<std::size_t>(mx) * static_cast<std::size_t>(geometry_.size[1] / 2 + 1) + static_cast<std::size_t>(my);
+    const std::size_t quadrant = static_cast<std::size_t>(mx) * static_cast<std::size_t>(geometry_.size[1] / 2 + 1) +
+                                 static_cast<std::size_t>(my);
     return first_.data() + quadrant * static_cast<std::size_t>(frequencies_ + 1);
 }
 

@@ -70,7 +70,7 @@ inline constexpr int kLargestDefaultSize = 128;
 /// Bytes for the field, an instant of it with its spline, and its four node fields; saturates at 2^64 - 1.
 std::uint64_t lattice_bytes(const TurbulenceSpec& spec, const LatticeGeometry& geometry);
 
-/// UserError for a size below 2 (nt: 1), more than 2^32 along z and t together, a period that is not positive and
+/// UserError for a size below 2 (nt: 1), nz nt > 2e9, a period that is not positive and
 /// finite, or more memory than memory_limit [bytes]; allocates nothing.
 void check_lattice(const TurbulenceSpec& spec, const LatticeGeometry& geometry, std::uint64_t memory_limit);
 

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
+#include "noise/cubic_taps.h"
 #include "noise/dispatch.h"
 #include "noise/portable_math.h"
 
@@ -49,8 +52,8 @@ double dot(Float4 a, Float4 b) {
     return (p[0] + p[2]) + (p[1] + p[3]);
 }
 
-/// The cubic B-spline's four weights at fraction f of a cell, and their derivatives a cell. The first tap of cell i stands
-/// at i in coefficients that begin with sample -1.
+/// The cubic B-spline's four weights at fraction f of a cell, and their derivatives a cell. The first tap of cell i
+/// stands at i in coefficients that begin with sample -1.
 struct Basis {
     Float4 w, d;
     std::size_t first;
@@ -62,12 +65,70 @@ struct Basis {
         const auto f = static_cast<float>(cells - i);
         const float g = 1 - f;
         constexpr float sixth = 1.0F / 6;
-        w = Float4{g * g * g * sixth, (4 + f * f * (3 * f - 6)) * sixth, (4 + g * g * (3 * g - 6)) * sixth, f * f * f * sixth};
+        w = Float4{g * g * g * sixth, (4 + f * f * (3 * f - 6)) * sixth, (4 + g * g * (3 * g - 6)) * sixth,
+                   f * f * f * sixth};
         d = Float4{-0.5F * g * g, 0.5F * f * (3 * f - 4), -0.5F * g * (3 * g - 4), 0.5F * f * f};
     }
 };
 
 constexpr int kWrap = 3;  ///< samples -1, n and n + 1 are stored beside a period's own, so that no tap needs a modulo
+
+/// One axis of a position [periods] in double precision.
+struct Place {
+    std::size_t first;
+    CubicTaps taps;
+};
+Place place(double x, int n) {
+    const double cells = (x - std::floor(x)) * n;
+    const int i = std::min(static_cast<int>(cells), n - 1);
+    return {static_cast<std::size_t>(i), CubicTaps(cells - i)};
+}
+
+/// A spline's coefficients: wrapped copies of `size` cells, z fastest.
+struct Coefficients {
+    const float* data;
+    std::array<int, 3> size;
+
+    /// Value and gradient, and the Hessian if `second`, per period.
+    template <bool second>
+    [[gnu::always_inline]] IndexJet evaluate(const dvec3& x) const {
+        const Place bx = place(x.x, size[0]), by = place(x.y, size[1]), bz = place(x.z, size[2]);
+        const std::size_t row = static_cast<std::size_t>(size[2]) + kWrap,
+                          plane = (static_cast<std::size_t>(size[1]) + kWrap) * row;
+        const float* corner = data + bx.first * plane + by.first * row + bz.first;
+        Double4 value{}, x1{}, y1{}, xx{}, xy{}, yy{};  // still to be weighed along z
+        for (std::size_t i = 0; i < 4; ++i, corner += plane) {
+            Double4 v{}, s{}, q{};
+            for (std::size_t j = 0; j < 4; ++j) {
+                const Double4 c = load_taps(corner + j * row);
+                v += by.taps.weight[j] * c;
+                s += by.taps.slope[j] * c;
+                if constexpr (second) q += by.taps.curvature[j] * c;
+            }
+            value += bx.taps.weight[i] * v;
+            x1 += bx.taps.slope[i] * v;
+            y1 += bx.taps.weight[i] * s;
+            if constexpr (second) {
+                xx += bx.taps.curvature[i] * v;
+                xy += bx.taps.slope[i] * s;
+                yy += bx.taps.weight[i] * q;
+            }
+        }
+        const double nx = size[0], ny = size[1], nz = size[2];
+        IndexJet jet{dot4(value, bz.taps.weight),
+                     {nx * dot4(x1, bz.taps.weight), ny * dot4(y1, bz.taps.weight), nz * dot4(value, bz.taps.slope)},
+                     glm::dmat3(0)};
+        if constexpr (second) {
+            jet.hessian[0][0] = nx * nx * dot4(xx, bz.taps.weight);
+            jet.hessian[1][1] = ny * ny * dot4(yy, bz.taps.weight);
+            jet.hessian[2][2] = nz * nz * dot4(value, bz.taps.curvature);
+            jet.hessian[0][1] = jet.hessian[1][0] = nx * ny * dot4(xy, bz.taps.weight);
+            jet.hessian[0][2] = jet.hessian[2][0] = nx * nz * dot4(x1, bz.taps.slope);
+            jet.hessian[1][2] = jet.hessian[2][1] = ny * nz * dot4(y1, bz.taps.slope);
+        }
+        return jet;
+    }
+};
 
 std::array<int, 3> spatial_size(const LatticeGeometry& g) {
     return {g.size[0], g.size[1], g.size[2]};
@@ -149,7 +210,8 @@ PeriodicSpline3::PeriodicSpline3(FftVector<complex32> spectrum, const std::array
     const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
     lower_ = *least;
     upper_ = *most;
-    const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]), nz = static_cast<std::size_t>(size_[2]);
+    const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]),
+               nz = static_cast<std::size_t>(size_[2]);
     coefficients_.resize((nx + kWrap) * (ny + kWrap) * (nz + kWrap));
     tbb::parallel_for(std::size_t{0}, nx + kWrap, [&](std::size_t i) {
         for (std::size_t j = 0; j < ny + kWrap; ++j) {
@@ -165,7 +227,8 @@ PeriodicSpline3::PeriodicSpline3(FftVector<complex32> spectrum, const std::array
 
 EIKONAL_CLONES PeriodicSpline3::Sample PeriodicSpline3::sample(const dvec3& x) const {
     const Basis bx(x.x, size_[0]), by(x.y, size_[1]), bz(x.z, size_[2]);
-    const std::size_t row = static_cast<std::size_t>(size_[2]) + kWrap, plane = (static_cast<std::size_t>(size_[1]) + kWrap) * row;
+    const std::size_t row = static_cast<std::size_t>(size_[2]) + kWrap,
+                      plane = (static_cast<std::size_t>(size_[1]) + kWrap) * row;
     const float* corner = coefficients_.data() + bx.first * plane + by.first * row + bz.first;
     Float4 value{}, slope_x{}, slope_y{};  // still to be weighed along z
     for (std::size_t i = 0; i < 4; ++i, corner += plane) {
@@ -183,6 +246,15 @@ EIKONAL_CLONES PeriodicSpline3::Sample PeriodicSpline3::sample(const dvec3& x) c
             {size_[0] * dot(slope_x, bz.w), size_[1] * dot(slope_y, bz.w), size_[2] * dot(value, bz.d)}};
 }
 
+EIKONAL_CLONES IndexSample PeriodicSpline3::smooth_sample(const dvec3& x) const {
+    const IndexJet jet = Coefficients{coefficients_.data(), size_}.evaluate<false>(x);
+    return {jet.n, jet.gradient};
+}
+
+EIKONAL_CLONES IndexJet PeriodicSpline3::jet(const dvec3& x) const {
+    return Coefficients{coefficients_.data(), size_}.evaluate<true>(x);
+}
+
 IndexSample falloff_at(const Falloff& falloff, const dvec3& x) {
     const dvec3 d = x - falloff.origin;
     const double h = d.x * falloff.normal.x + d.y * falloff.normal.y + d.z * falloff.normal.z;
@@ -191,17 +263,76 @@ IndexSample falloff_at(const Falloff& falloff, const dvec3& x) {
     return {g, falloff.normal * (-g / falloff.length)};
 }
 
+IndexJet falloff_jet(const Falloff& falloff, const dvec3& x) {
+    const IndexSample g = falloff_at(falloff, x);
+    return {g.n, g.gradient, glm::outerProduct(g.gradient, falloff.normal * (-1 / falloff.length))};
+}
+
+IndexSample with_falloff(const std::optional<Falloff>& falloff, const dvec3& x, const IndexSample& field) {
+    if (!falloff) return field;
+    const IndexSample g = falloff_at(*falloff, x);
+    return {field.n * g.n, field.gradient * g.n + g.gradient * field.n};
+}
+
+IndexJet with_falloff(const std::optional<Falloff>& falloff, const dvec3& x, const IndexJet& field) {
+    if (!falloff) return field;
+    const IndexJet g = falloff_jet(*falloff, x);
+    return {field.n * g.n, field.gradient * g.n + g.gradient * field.n,
+            field.hessian * g.n + glm::outerProduct(field.gradient, g.gradient) +
+                glm::outerProduct(g.gradient, field.gradient) + g.hessian * field.n};
+}
+
+double snapshot_slope_error(const LatticeField& field, int padding) {
+    const LatticeGeometry& g = field.geometry();
+    // Squared errors of value and slope of the spline along each axis.
+    std::array<std::vector<double>, 3> value, slope;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (int m = 0; 2 * m <= g.size[axis]; ++m) {
+            const double turns = static_cast<double>(m) / (g.size[axis] * padding);
+            value[axis].push_back(spline_error(turns) * spline_error(turns));
+            slope[axis].push_back(spline_slope_error(turns) * spline_slope_error(turns));
+        }
+    double error = 0, power = 0;
+    std::array<std::size_t, 3> m{};
+    const auto count = [&](std::size_t axis) {
+        return m[axis] == 0 || is_nyquist(static_cast<int>(m[axis]), g.size[axis]) ? 1.0 : 2.0;
+    };
+    for (m[0] = 0; m[0] < value[0].size(); ++m[0])
+        for (m[1] = 0; m[1] < value[1].size(); ++m[1])
+            for (m[2] = 0; m[2] < value[2].size(); ++m[2]) {
+                const double variance =
+                    count(0) * count(1) * count(2) *
+                    field.mode_variance(static_cast<int>(m[0]), static_cast<int>(m[1]), static_cast<int>(m[2]));
+                const double values = value[0][m[0]] + value[1][m[1]] + value[2][m[2]];
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const double k = derivative_wavenumber(static_cast<int>(m[axis]), g.size[axis], g.period[axis]);
+                    power += variance * k * k;
+                    error += variance * k * k * (values - value[axis][m[axis]] + slope[axis][m[axis]]);
+                }
+            }
+    return power > 0 ? std::sqrt(error / power) : 0;
+}
+
 LatticeSnapshot::LatticeSnapshot(const LatticeField& field, double t, int padding)
     : period_{field.geometry().period[0], field.geometry().period[1], field.geometry().period[2]},
       falloff_(field.spec().falloff),
       spline_(field.spectrum_at(t), spatial_size(field.geometry()), padding) {}
 
 IndexSample LatticeSnapshot::sample(const dvec3& x) const {
-    const PeriodicSpline3::Sample s = spline_.sample({x.x / period_[0], x.y / period_[1], x.z / period_[2]});
-    const dvec3 gradient(s.gradient.x / period_[0], s.gradient.y / period_[1], s.gradient.z / period_[2]);
-    if (!falloff_) return {s.value, gradient};
-    const IndexSample g = falloff_at(*falloff_, x);
-    return {s.value * g.n, gradient * g.n + g.gradient * s.value};
+    const PeriodicSpline3::Sample s = spline_.sample(x / period_);
+    return with_falloff(falloff_, x, IndexSample{s.value, s.gradient / period_});
+}
+
+IndexSample LatticeSnapshot::smooth_sample(const dvec3& x) const {
+    const IndexSample s = spline_.smooth_sample(x / period_);
+    return with_falloff(falloff_, x, IndexSample{s.n, s.gradient / period_});
+}
+
+IndexJet LatticeSnapshot::jet(const dvec3& x) const {
+    IndexJet jet = spline_.jet(x / period_);
+    jet.gradient /= period_;
+    for (int i = 0; i < 3; ++i) jet.hessian[i] /= period_ * period_[i];
+    return with_falloff(falloff_, x, jet);
 }
 
 FftVector<float> node_field(const LatticeField& field, double t, Component what) {

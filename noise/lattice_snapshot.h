@@ -27,8 +27,8 @@ namespace eikonal {
 FftVector<complex32> pad_spectrum(const FftVector<complex32>& spectrum, const std::array<int, 3>& size,
                                   const std::array<int, 3>& finer);
 
-/// Periodic cubic B-spline in three dimensions with period 1 along each axis. Positions are double; what follows from the
-/// fraction of a cell is single precision (rounding 1e-6 of the largest value). Immutable, thread-safe.
+/// Periodic cubic B-spline in three dimensions with period 1 along each axis. Positions are double; what follows from
+/// the fraction of a cell is single precision (rounding 1e-6 of the largest value). Immutable, thread-safe.
 class PeriodicSpline3 {
   public:
     /// spectrum: half-complex, size[0] × size[1] × (size[2]/2 + 1), Hermitian; the spline passes through its
@@ -41,6 +41,11 @@ class PeriodicSpline3 {
     };
     /// At x [periods], any finite value (reduced modulo 1).
     Sample sample(const dvec3& x) const;
+
+    /// The same in double precision throughout, for integrators of high order: as smooth as the spline is.
+    IndexSample smooth_sample(const dvec3& x) const;
+    /// With the second derivatives [per period²]: the exact derivative of that gradient, continuous, piecewise linear.
+    IndexJet jet(const dvec3& x) const;
 
     /// Bounds of the value anywhere: a spline lies within its coefficients' range.
     float lower_bound() const { return lower_; }
@@ -60,6 +65,10 @@ double spline_transfer(double turns);
 double spline_error(double turns);
 double spline_slope_error(double turns);
 
+/// Expected rms error of a snapshot's gradient, relative to the rms gradient, without falloff: the discrete sum over
+/// the lattice's modes. With cells of l0/2 (von Kármán) and padding 1, 2, 3, 4: 0.19, 0.0096, 0.0022, 8.4e-4.
+double snapshot_slope_error(const LatticeField& field, int padding);
+
 /// n - n_ambient and its gradient at one instant, with falloff. Immutable, thread-safe.
 class LatticeSnapshot {
   public:
@@ -68,6 +77,9 @@ class LatticeSnapshot {
 
     /// At world position x [m]; periodic but for the falloff.
     IndexSample sample(const dvec3& x) const;
+    /// The same in double precision throughout, and with the Hessian: the tracer's.
+    IndexSample smooth_sample(const dvec3& x) const;
+    IndexJet jet(const dvec3& x) const;
 
     /// Bounds of n - n_ambient anywhere.
     double lower_bound() const {
@@ -78,13 +90,18 @@ class LatticeSnapshot {
     }
 
   private:
-    std::array<double, 3> period_;
+    dvec3 period_;  ///< [m]
     std::optional<Falloff> falloff_;
     PeriodicSpline3 spline_;
 };
 
 /// g and ∇g [1/m] of a falloff at x.
 IndexSample falloff_at(const Falloff& falloff, const dvec3& x);
+/// With the second derivatives [1/m²].
+IndexJet falloff_jet(const Falloff& falloff, const dvec3& x);
+/// The product with a field's own values at x.
+IndexSample with_falloff(const std::optional<Falloff>& falloff, const dvec3& x, const IndexSample& field);
+IndexJet with_falloff(const std::optional<Falloff>& falloff, const dvec3& x, const IndexJet& field);
 
 /// Node values at time t, nx × ny × nz row-major, node (i, j, l) at world (i Lx/nx, j Ly/ny, l Lz/nz): n - n_ambient or
 /// an exact component of its gradient (spectrum times ik), both with falloff.

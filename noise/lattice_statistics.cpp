@@ -16,6 +16,8 @@ constexpr double kDefaultOuterScales = 2;       ///< periods in L0
 constexpr double kDefaultCorrelationTimes = 4;  ///< T in correlation times of the largest eddies
 constexpr int kDefaultTimes = 32;
 constexpr int kDefaultPaperSize = 32;
+/// nz nt: the modes of a row are counted by an int, and by the 32 bits of a random counter.
+constexpr double kLongestRow = 2e9;
 
 /// Calls action(mx, my, mz, modes) for every |m| of the lattice; `modes` signed modes share it.
 template <class Action>
@@ -74,12 +76,6 @@ void check_lattice(const TurbulenceSpec& spec, const LatticeGeometry& g, std::ui
     if (g.half() > std::numeric_limits<std::uint16_t>::max())
         throw UserError(fmt::format("turbulence: lattice nz = {} is too large; allowed is {} or less", g.size[2],
                                     2 * (std::numeric_limits<std::uint16_t>::max() - 1)));
-    // a row of modes along z and t is counted by an int, and by the 32 bits of a random counter
-    const auto times = static_cast<std::uint64_t>(spec.alpha > 0 ? g.size[3] : 1);
-    if (static_cast<std::uint64_t>(g.half()) * (times + 2) > std::numeric_limits<int>::max())
-        throw UserError(fmt::format(
-            "turbulence: lattice nz = {} times nt = {} is too large; allowed is a product of 2^32 or less", g.size[2],
-            g.size[3]));
     const std::uint64_t bytes = lattice_bytes(spec, g);
     if (bytes > memory_limit)
         throw UserError(
@@ -87,6 +83,10 @@ void check_lattice(const TurbulenceSpec& spec, const LatticeGeometry& g, std::ui
                         "use a smaller lattice or form = \"screens\"",
                         g.size[0], g.size[1], g.size[2], g.size[3], static_cast<double>(bytes) * 1e-9,
                         static_cast<double>(memory_limit) * 1e-9));
+    const double row = double(g.size[2]) * (spec.alpha > 0 ? g.size[3] : 1);
+    if (row > kLongestRow)
+        throw UserError(fmt::format("turbulence: lattice nz = {} times nt = {} is too large; allowed is {:g} or less",
+                                    g.size[2], g.size[3], kLongestRow));
 }
 
 double LatticeField::mode_correlation(int mx, int my, int mz, double t) const {

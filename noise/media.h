@@ -98,6 +98,7 @@ struct WindSpec {
 
 /// [[medium]] type="blobs" (PHYSICS 4)
 struct BlobsSpec {
+    std::uint64_t seed = 1;  ///< of when and where the sources give birth
     std::vector<BlobSpec> blobs;
     std::vector<BlobSourceSpec> sources;
     std::optional<WindSpec> wind;

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "noise/cubic_taps.h"
 #include "noise/dispatch.h"
 #include "noise/lattice_snapshot.h"
 
@@ -69,7 +70,8 @@ EIKONAL_CLONES void locate(double first, double step, double size, double inv_si
 }
 
 /// A row at constant y: the taps along y collapse once into two periodic functions of x, the value and ∂/∂v.
-EIKONAL_CLONES void collapse_row(const float* coefficients, int stride, int count, float ty, float* value, float* slope) {
+EIKONAL_CLONES void collapse_row(const float* coefficients, int stride, int count, float ty, float* value,
+                                 float* slope) {
     const Weights y = weights(ty);
     const float *c0 = coefficients, *c1 = c0 + stride, *c2 = c1 + stride, *c3 = c2 + stride;
     const float w0 = y.w[0], w1 = y.w[1], w2 = y.w[2], w3 = y.w[3], d0 = y.d[0], d1 = y.d[1], d2 = y.d[2], d3 = y.d[3];
@@ -87,8 +89,10 @@ struct GradientCell {
 
 /// Rows to columns.
 void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
-    const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-    const Float4 cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+                 ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Float4 cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5),
+                 cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
     a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
     b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
     c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
@@ -96,7 +100,9 @@ void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
 }
 
 constexpr int kCellsAtOnce = 4;
-int whole_cells(int cells) { return (cells + kCellsAtOnce - 1) / kCellsAtOnce * kCellsAtOnce; }
+int whole_cells(int cells) {
+    return (cells + kCellsAtOnce - 1) / kCellsAtOnce * kCellsAtOnce;
+}
 
 /// value, slope: at least whole_cells(cells) + 3 readable; out: whole_cells(cells).
 EIKONAL_CLONES void gradient_cells(const float* value, const float* slope, int cells, float scale_x, float scale_y,
@@ -134,12 +140,13 @@ EIKONAL_CLONES void value_cells(const float* value, int cells, float scale, Floa
     for (int i = 0; i < cells; ++i) {
         const float c0 = value[i], c1 = value[i + 1], c2 = value[i + 2], c3 = value[i + 3];
         constexpr float sixth = 1.0F / 6;
-        out[i] = Float4{scale * (sixth * (c0 + 4 * c1 + c2)), scale * (0.5F * (c2 - c0)), scale * (0.5F * ((c0 - c1) + (c2 - c1))),
-                        scale * (sixth * ((c3 - c0) + 3 * (c1 - c2)))};
+        out[i] = Float4{scale * (sixth * (c0 + 4 * c1 + c2)), scale * (0.5F * (c2 - c0)),
+                        scale * (0.5F * ((c0 - c1) + (c2 - c1))), scale * (sixth * ((c3 - c0) + 3 * (c1 - c2)))};
     }
 }
 
-EIKONAL_CLONES void values_on_row(const Float4* cells, const std::int32_t* cell, const float* tx, int count, float* values) {
+EIKONAL_CLONES void values_on_row(const Float4* cells, const std::int32_t* cell, const float* tx, int count,
+                                  float* values) {
     for (int i = 0; i < count; ++i) {
         const Float4 c = cells[cell[i]];
         const float t = tx[i];
@@ -156,24 +163,6 @@ EIKONAL_CLONES void values_at(const float* coefficients, int stride, const Block
         for (int b = 1; b < 4; ++b) value += y.w[b] * load(c + b * static_cast<std::ptrdiff_t>(stride));
         values[i] += scale * sum(value * x.w);
     }
-}
-
-/// Multiplies by the prefilter and zero pads; a mode at the unpadded Nyquist is split between both signs.
-FftVector<complex32> padded_spectrum(const FftVector<complex32>& in, int nx, int ny, int pad) {
-    const int px = nx * pad, py = ny * pad, hy = ny / 2 + 1, phy = py / 2 + 1;
-    FftVector<complex32> out(static_cast<std::size_t>(px) * static_cast<std::size_t>(phy));
-    for (int a = 0; a < nx; ++a) {
-        const bool split_x = nx % 2 == 0 && a == nx / 2;
-        for (int b = 0; b < hy; ++b) {
-            complex32 v = in[static_cast<std::size_t>(a) * hy + b];
-            if (ny % 2 == 0 && b == ny / 2) v *= 0.5F;
-            if (split_x) v *= 0.5F;
-            const int row = 2 * a > nx ? a - nx + px : a;
-            out[static_cast<std::size_t>(row) * phy + b] = v;
-            if (split_x) out[static_cast<std::size_t>(px - row) * phy + b] = v;
-        }
-    }
-    return out;
 }
 
 FftVector<float> prefilter(int n) {
@@ -200,7 +189,7 @@ PeriodicSpline2::PeriodicSpline2(FftVector<complex32>&& spectrum, int nx, int ny
 PeriodicSpline2::PeriodicSpline2(const SplinePlan2& plan, FftVector<complex32>&& spectrum, double Lx, double Ly)
     : nx_(plan.nx_ * plan.pad_), ny_(plan.ny_ * plan.pad_), stride_(nx_ + 4), per_x_(nx_ / Lx), per_y_(ny_ / Ly) {
     FftVector<complex32> modes =
-        plan.pad_ == 1 ? std::move(spectrum) : padded_spectrum(spectrum, plan.nx_, plan.ny_, plan.pad_);
+        plan.pad_ == 1 ? std::move(spectrum) : pad_spectrum(spectrum, {1, plan.nx_, plan.ny_}, {1, nx_, ny_});
     const auto half = static_cast<std::size_t>(ny_ / 2 + 1);
     for (std::size_t a = 0; a < static_cast<std::size_t>(nx_); ++a)
         for (std::size_t b = 0; b < half; ++b) modes[a * half + b] *= plan.filter_x_[a] * plan.filter_y_[b];
@@ -215,7 +204,8 @@ PeriodicSpline2::PeriodicSpline2(const SplinePlan2& plan, FftVector<complex32>&&
         for (int a = 0; a < nx_; ++a) {
             const float* from = samples.data() + static_cast<std::ptrdiff_t>(a) * ny_;
             float* to = coefficients_.data() + a + 1;
-            for (int b = b0; b < std::min(b0 + kTile, ny_); ++b) to[static_cast<std::ptrdiff_t>(b + 1) * stride_] = from[b];
+            for (int b = b0; b < std::min(b0 + kTile, ny_); ++b)
+                to[static_cast<std::ptrdiff_t>(b + 1) * stride_] = from[b];
         }
     for (int b = 1; b <= ny_; ++b) {
         float* row = coefficients_.data() + static_cast<std::ptrdiff_t>(b) * stride_;
@@ -242,7 +232,29 @@ PeriodicSpline2::Sample PeriodicSpline2::sample(double x, double y) const {
         value += wy.w[b] * row;
         slope += wy.d[b] * row;
     }
-    return {sum(value * wx.w), static_cast<float>(per_x_) * sum(value * wx.d), static_cast<float>(per_y_) * sum(slope * wx.w)};
+    return {sum(value * wx.w), static_cast<float>(per_x_) * sum(value * wx.d),
+            static_cast<float>(per_y_) * sum(slope * wx.w)};
+}
+
+PeriodicSpline2::Jet PeriodicSpline2::jet(double x, double y) const {
+    if (coefficients_.empty()) return {};
+    const double u = wrap(std::fmod(x, nx_ / per_x_) * per_x_, nx_), v = wrap(std::fmod(y, ny_ / per_y_) * per_y_, ny_);
+    const auto cu = static_cast<std::int32_t>(u), cv = static_cast<std::int32_t>(v);
+    const CubicTaps tx(u - cu), ty(v - cv);
+    const float* c = coefficients_.data() + static_cast<std::ptrdiff_t>(cv) * stride_ + cu;
+    Double4 value{}, slope{}, curvature{};
+    for (int b = 0; b < 4; ++b, c += stride_) {
+        const Double4 row = load_taps(c);
+        value += ty.weight[b] * row;
+        slope += ty.slope[b] * row;
+        curvature += ty.curvature[b] * row;
+    }
+    return {dot4(value, tx.weight),
+            per_x_ * dot4(value, tx.slope),
+            per_y_ * dot4(slope, tx.weight),
+            per_x_ * per_x_ * dot4(value, tx.curvature),
+            per_x_ * per_y_ * dot4(slope, tx.slope),
+            per_y_ * per_y_ * dot4(curvature, tx.weight)};
 }
 
 /// A batch's line in cells: start in [0, n], step in [-n/2, n/2].
@@ -262,7 +274,8 @@ PeriodicSpline2::Line PeriodicSpline2::line(double x0, double y0, double step_x,
 }
 
 PeriodicSpline2::Columns PeriodicSpline2::columns(double x0, double step_x, int n) const {
-    Columns result{std::vector<std::int32_t>(static_cast<std::size_t>(n)), std::vector<float>(static_cast<std::size_t>(n)), 0, 0};
+    Columns result{std::vector<std::int32_t>(static_cast<std::size_t>(n)),
+                   std::vector<float>(static_cast<std::size_t>(n)), 0, 0};
     if (coefficients_.empty()) return result;
     const Line l = line(x0, 0, step_x, 0);
     locate(l.u, l.du, nx_, 1.0 / nx_, 0, n, result.cell.data(), result.t.data());
@@ -288,7 +301,8 @@ void PeriodicSpline2::add_row_gradients(const Columns& columns, double y, float 
     if (coefficients_.empty() || columns.count == 0) return;
     const FftVector<float> row = collapsed(columns, y);
     FftScratch<GradientCell> cells(static_cast<std::size_t>(whole_cells(columns.count)));
-    gradient_cells(row.data(), row.data() + row.size() / 2, columns.count, weight * static_cast<float>(per_x_), weight * static_cast<float>(per_y_), cells.data());
+    gradient_cells(row.data(), row.data() + row.size() / 2, columns.count, weight * static_cast<float>(per_x_),
+                   weight * static_cast<float>(per_y_), cells.data());
     gradients_on_row(cells.data(), columns.cell.data(), columns.t.data(), static_cast<int>(columns.cell.size()), uv);
 }
 

@@ -51,10 +51,16 @@ class PeriodicSpline2 {
     /// At any finite position [m].
     Sample sample(double x, double y) const;
 
+    /// With the second derivatives [1/m²], in double precision throughout: as smooth as the spline is.
+    struct Jet {
+        double value = 0, dx = 0, dy = 0, dxx = 0, dxy = 0, dyy = 0;
+    };
+    Jet jet(double x, double y) const;
+
     /// Where evenly spaced points of a row lie among the cells: the same for every row of a picture, so found once.
     struct Columns {
         std::vector<std::int32_t> cell;
-        std::vector<float> t;  ///< place within the cell, 0 … 1
+        std::vector<float> t;      ///< place within the cell, 0 … 1
         int first = 0, count = 0;  ///< the cells among which they are
     };
     /// Points at x0 + i step_x, i < n.

@@ -21,6 +21,20 @@ PeriodicSpline2::Sample ScreenSnapshot::sample(double x, double y) const {
     return sum;
 }
 
+PeriodicSpline2::Jet ScreenSnapshot::jet(double x, double y) const {
+    PeriodicSpline2::Jet sum;
+    for (const auto& band : bands_) {
+        const PeriodicSpline2::Jet s = band->jet(x - drift_x_, y - drift_y_);
+        sum.value += s.value;
+        sum.dx += s.dx;
+        sum.dy += s.dy;
+        sum.dxx += s.dxx;
+        sum.dxy += s.dxy;
+        sum.dyy += s.dyy;
+    }
+    return sum;
+}
+
 ScreenSnapshot::Columns ScreenSnapshot::columns(double x0, double step_x, int n) const {
     Columns result;
     for (const auto& band : bands_) result.push_back(band->columns(x0 - drift_x_, step_x, n));

@@ -31,6 +31,8 @@ class ScreenSnapshot {
 
     /// ψ [m] and ∇ψ [rad] at any finite position.
     PeriodicSpline2::Sample sample(double x, double y) const;
+    /// With the second derivatives, in double precision.
+    PeriodicSpline2::Jet jet(double x, double y) const;
     /// Where the points x0 + i step_x, i < n, lie on every lattice of this screen; the same for all rows.
     using Columns = std::vector<PeriodicSpline2::Columns>;
     Columns columns(double x0, double step_x, int n) const;
@@ -57,8 +59,8 @@ class ScreenField {
 
     /// Discrete expectations (of the lattices, not the continuum), single axis [rad²]. Var ∂ψ of one screen:
     double gradient_variance(std::size_t screen) const;
-    /// Σ (lever_m(D)/D)² var_m, the lever as slab_lever gives it: the angle that an object at D seems displaced by. Continuum for a point
-    /// aperture and large L0: 1.093 Cn² D l0^(-1/3).
+    /// Σ (lever_m(D)/D)² var_m, the lever as slab_lever gives it: the angle that an object at D seems displaced by.
+    /// Continuum for a point aperture and large L0: 1.093 Cn² D l0^(-1/3).
     double displacement_angle_variance(double D) const;
     /// Σ var_m: angle of arrival of parallel rays. Continuum: 3.28 Cn² L l0^(-1/3).
     double arrival_angle_variance() const;

@@ -31,9 +31,9 @@ inline constexpr double kKolmogorovConstant = 0.0330054;
 /// km l0 of the modified von Kármán spectrum.
 inline constexpr double kInnerScaleConstant = 5.92;
 
-/// Temporal weight of angular frequency kappa [rad/s] for a spatial mode k² (before normalisation over the lattice of κ):
-/// exp(-κ²/(α k²)), *corrected* (each spatial mode is normalised over κ, so that its variance is exact for every α).
-/// α k² = 0: 1 at κ = 0, else 0 (frozen).
+/// Temporal weight of angular frequency kappa [rad/s] for a spatial mode k² (before normalisation over the lattice of
+/// κ): exp(-κ²/(α k²)), *corrected* (each spatial mode is normalised over κ, so that its variance is exact for every
+/// α). α k² = 0: 1 at κ = 0, else 0 (frozen).
 double temporal_weight(double kappa, double alpha, double k2);
 
 }  // namespace eikonal

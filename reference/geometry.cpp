@@ -85,7 +85,8 @@ Geometry::Geometry(const Scene& scene, dvec3 anchor)
 Geometry::~Geometry() = default;
 
 int Geometry::add_material(const ObjectSpec& object) {
-    materials_.push_back({object.texture ? dvec3(1) : object.color, dvec3(0), object.texture, object.emissive});
+    materials_.push_back({object.texture ? dvec3(1) : object.color, dvec3(0), object.texture, object.emissive,
+                          object.mirror, object.refractive_index});
     return static_cast<int>(materials_.size()) - 1;
 }
 
@@ -101,7 +102,8 @@ void Geometry::add_mesh(const ObjectSpec& object, int index) {
         entry.mesh = read_mesh(object.file.value(), object.scale, object.center);
     }
     for (const MeshMaterial& m : entry.mesh.materials)
-        materials_.push_back({m.diffuse, m.emission, m.texture, object.emissive});
+        materials_.push_back(
+            {m.diffuse, m.emission, m.texture, object.emissive, object.mirror, object.refractive_index});
     meshes_.push_back(std::move(entry));
 }
 

@@ -32,6 +32,8 @@ struct Material {
     dvec3 emission{0, 0, 0};
     std::optional<std::filesystem::path> texture;  ///< multiplies `color`
     bool unlit = false;                            ///< shows its colour whatever the light
+    double mirror = 0;                             ///< part of the light that is reflected, 0 … 1
+    std::optional<double> refractive_index;        ///< of glass
 };
 
 /// Where a segment origin + t direction first meets a surface.

@@ -3,15 +3,11 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "noise/random.h"
 #include "reference/sampler.h"
-#include "warp/image/picture.h"
 #include "warp/image/pixel_codec.h"
 
 namespace eikonal::reference {
@@ -19,25 +15,41 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTileSize = 32;
+constexpr float kTrappedId = -1, kNoIndexId = -2;
+/// Of a straight ray through its own hit, by rounding [px].
+constexpr double kRoundingShift = 1e-7;
 
 int tiles_across(int pixels) {
     return (pixels + kTileSize - 1) / kTileSize;
-}
-
-std::array<int, 2> resolution(const Scene& scene) {
-    return scene.camera.resolution.value_or(std::array{1920, 1080});
 }
 
 float storable(double radiance) {
     return std::min(radiance > 0 ? static_cast<float>(radiance) : 0.0f, kLargestHalf);  // NaN becomes 0
 }
 
-/// To 18 significant bits: the last six of the mantissa are zero, which packs well. Infinity stays.
-float rounded_depth(float z) {
-    return std::bit_cast<float>((std::bit_cast<std::uint32_t>(z) + 32u) & ~63u);
+std::size_t count(const std::vector<float>& values, float wanted) {
+    return static_cast<std::size_t>(std::count(values.begin(), values.end(), wanted));
 }
 
 }  // namespace
+
+/// The media at one frame, and the light that has passed through them.
+struct Renderer::Air {
+    FieldInstant field;
+    TraceSettings trace;
+    std::optional<Shadowgraph> sunlight;
+};
+
+std::size_t RenderedFrame::trapped() const {
+    return count(id, kTrappedId);
+}
+std::size_t RenderedFrame::without_index() const {
+    return count(id, kNoIndexId);
+}
+std::size_t RenderedFrame::folded() const {
+    return static_cast<std::size_t>(
+        std::count_if(magnification.begin(), magnification.end(), [](float m) { return m < 0; }));
+}
 
 CameraRay camera_ray(const Camera& camera, double px, double py) {
     const dvec2 s = camera.slope(px, py);
@@ -46,14 +58,26 @@ CameraRay camera_ray(const Camera& camera, double px, double py) {
     return {camera.position, camera.forward + across};
 }
 
-Renderer::Renderer(const Scene& scene, int samples)
+Bundle pixel_bundle(const Camera& camera, double px, double py) {
+    const dvec3 right = camera.right / camera.f_px, down = -camera.up / (camera.f_px * camera.pixel_aspect);
+    if (camera.projection == Projection::Orthographic) return {Differential{right, {}}, Differential{down, {}}};
+    const dvec3 d = camera_ray(camera, px, py).direction;
+    const double length = glm::length(d);
+    const dvec3 unit = d / length;
+    const auto turn = [&](const dvec3& change) { return (change - glm::dot(change, unit) * unit) / length; };
+    return {Differential{{}, turn(right)}, Differential{{}, turn(down)}};
+}
+
+Renderer::Renderer(const Scene& scene, const RenderSettings& settings)
     : scene_(scene),
-      width_(resolution(scene)[0]),
-      height_(resolution(scene)[1]),
-      samples_(samples),
+      settings_(settings),
+      width_(scene.camera.resolution.value_or(kDefaultResolution)[0]),
+      height_(scene.camera.resolution.value_or(kDefaultResolution)[1]),
       path_(scene.camera, width_, height_),
       geometry_(scene_, path_.reference().position),
-      shading_(scene_, geometry_) {}
+      shading_(scene_, geometry_) {
+    if (!settings.straight) air_.emplace(scene_, settings.rays);
+}
 
 int Renderer::tile_count() const {
     return tiles_across(width_) * tiles_across(height_);
@@ -61,63 +85,119 @@ int Renderer::tile_count() const {
 
 RenderedFrame Renderer::render(int frame, const std::function<void()>& tile_done) const {
     const auto area = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    RenderedFrame result{width_, height_, std::vector<float>(4 * area), std::vector<float>(area)};
+    RenderedFrame result{width_,
+                         height_,
+                         std::vector<float>(settings_.colour ? 4 * area : 0),
+                         std::vector<float>(area),
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {}};
     const Camera camera = path_.at(frame);
+    std::optional<Air> air;
+    if (!settings_.straight) {
+        for (auto* plane : {&result.length, &result.u, &result.v, &result.id, &result.steps, &result.error})
+            plane->resize(area);
+        if (settings_.magnification) result.magnification.resize(area);
+        air.emplace(Air{air_->at(frame), air_->trace_settings(camera), {}});
+        if (settings_.light_rays > 0 && scene_.light && settings_.colour)
+            air->sunlight.emplace(scene_, geometry_, air->field, air->trace, settings_.light_rays);
+    }
     tbb::parallel_for(0, tile_count(), [&](int index) {
         const int x0 = index % tiles_across(width_) * kTileSize, y0 = index / tiles_across(width_) * kTileSize;
         render_tile(camera, frame, {x0, y0, std::min(x0 + kTileSize, width_), std::min(y0 + kTileSize, height_)},
-                    result);
+                    air ? &*air : nullptr, result);
         if (tile_done) tile_done();
     });
     return result;
 }
 
-void Renderer::render_tile(const Camera& camera, int frame, const Tile& tile, RenderedFrame& into) const {
-    const RandomStream in_pixel(0, "pixel position", static_cast<std::uint64_t>(frame));
-    const RandomStream in_sun(0, "sun direction", static_cast<std::uint64_t>(frame));
-    const RandomStream in_sky(0, "sky direction", static_cast<std::uint64_t>(frame));
-    for (int y = tile.y0; y < tile.y1; ++y) {
+void Renderer::render_tile(const Camera& camera, int frame, const Tile& tile, const Air* air,
+                           RenderedFrame& into) const {
+    for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x) {
             const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-            const std::uint64_t pixel_bits = in_pixel.bits(i), sun_bits = in_sun.bits(i), sky_bits = in_sky.bits(i);
-            dvec3 sum(0);
-            for (int k = 0; k < samples_; ++k) {
-                const auto sample = static_cast<std::uint32_t>(k);
-                const dvec2 p = spread_point(sample, pixel_bits);
-                const CameraRay ray = camera_ray(camera, x + p.x, y + p.y);
-                const auto hit = geometry_.intersect(ray.origin, ray.direction, 0, kInfinity);
-                sum += hit ? shading_.surface(*hit, {spread_point(sample, sun_bits), spread_point(sample, sky_bits)})
-                           : shading_.background(ray.direction);
+            if (settings_.colour) {
+                const dvec3 c = colour(camera, frame, x, y, air);
+                for (int k = 0; k < 3; ++k) into.color[4 * i + static_cast<std::size_t>(k)] = storable(c[k]);
+                into.color[4 * i + 3] = 1;
             }
-            const CameraRay center = camera_ray(camera, x + 0.5, y + 0.5);
-            const auto hit = geometry_.intersect(center.origin, center.direction, 0, kInfinity);
-            for (int c = 0; c < 3; ++c) into.color[4 * i + static_cast<std::size_t>(c)] = storable(sum[c] / samples_);
-            into.color[4 * i + 3] = 1;
-            into.depth[i] = static_cast<float>(hit ? hit->t : kInfinity);
+            if (air)
+                center_bent(camera, x, y, *air, i, into);
+            else
+                center_straight(camera, x, y, i, into);
         }
-    }
 }
 
-void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, Storage storage) {
-    constexpr std::size_t kColorBytes = 8, kPixelBytes = kColorBytes + sizeof(float);
-    Part part;
-    part.spec = OIIO::ImageSpec(frame.width, frame.height, 5, OIIO::TypeDesc::HALF);
-    part.spec.channelformats = {OIIO::TypeDesc::HALF, OIIO::TypeDesc::HALF, OIIO::TypeDesc::HALF, OIIO::TypeDesc::HALF,
-                                OIIO::TypeDesc::FLOAT};
-    part.spec.channelnames = {"R", "G", "B", "A", "Z"};
-    part.spec.alpha_channel = 3;
-    part.spec.z_channel = 4;
-    part.spec.attribute("compression", storage == Storage::Exact ? "zip" : "dwaa:45");
-    part.spec.attribute("oiio:ColorSpace", "Linear");
-    part.pixels.resize(frame.depth.size() * kPixelBytes);
-    for (std::size_t c = 0; c < 4; ++c)
-        encode_values(OIIO::TypeDesc::HALF, frame.color.data() + c, 4, part.pixels.data() + 2 * c, kPixelBytes,
-                      frame.depth.size());
-    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
-        const float z = storage == Storage::Exact ? frame.depth[i] : rounded_depth(frame.depth[i]);
-        std::memcpy(part.pixels.data() + i * kPixelBytes + kColorBytes, &z, sizeof z);
+dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air* air) const {
+    const auto pixel =
+        static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
+    const auto bits = [&](std::string_view name) {
+        return RandomStream(0, name, static_cast<std::uint64_t>(frame)).bits(pixel);
+    };
+    const std::uint64_t pixel_bits = bits("pixel position"), sun_bits = bits("sun direction"),
+                        sky_bits = bits("sky direction");
+    const RayTree tree(geometry_, shading_, air ? &air->field : nullptr,
+                       air && air->sunlight ? &*air->sunlight : nullptr);
+    dvec3 sum(0);
+    for (int k = 0; k < settings_.samples; ++k) {
+        const auto sample = static_cast<std::uint32_t>(k);
+        const dvec2 p = spread_point(sample, pixel_bits);
+        const CameraRay ray = camera_ray(camera, x + p.x, y + p.y);
+        sum += tree.radiance(ray.origin, ray.direction, air ? air->trace : TraceSettings{},
+                             {spread_point(sample, sun_bits), spread_point(sample, sky_bits)});
     }
-    write_picture(file, {{std::move(part)}, "openexr"});
+    return sum / static_cast<double>(settings_.samples);
+}
+
+void Renderer::center_straight(const Camera& camera, int x, int y, std::size_t i, RenderedFrame& into) const {
+    const CameraRay ray = camera_ray(camera, x + 0.5, y + 0.5);
+    const auto hit = geometry_.intersect(ray.origin, ray.direction, 0, kInfinity);
+    into.depth[i] = static_cast<float>(hit ? hit->t : kInfinity);
+}
+
+void Renderer::center_bent(const Camera& camera, int x, int y, const Air& air, std::size_t i,
+                           RenderedFrame& into) const {
+    const dvec2 center{x + 0.5, y + 0.5};
+    const CameraRay ray = camera_ray(camera, center.x, center.y);
+    const dvec3 direction = glm::normalize(ray.direction);
+    const bool bundled = settings_.magnification && follows_bundles(settings_.rays.integrator);
+    Bundle bundle{};
+    const Bundle pixels = pixel_bundle(camera, center.x, center.y);
+    if (bundled) bundle = pixels;
+    const BentHit end = trace(air.field, &geometry_, ray.origin, direction, air.trace, bundled ? &bundle : nullptr);
+    into.steps[i] = static_cast<float>(end.steps);
+    into.error[i] = static_cast<float>(end.error_px);
+    into.depth[i] = into.length[i] = static_cast<float>(kInfinity);
+    if (settings_.magnification) into.magnification[i] = 1;
+    if (end.end == BentHit::End::Trapped || end.end == BentHit::End::NoIndex) {
+        into.id[i] = end.end == BentHit::End::Trapped ? kTrappedId : kNoIndexId;
+        return;
+    }
+    const bool perspective = camera.projection == Projection::Perspective;
+    // what is seen, from the camera: a point, or the direction of infinitely far background
+    dvec3 seen = end.at.x - camera.position;
+    if (end.hit) {
+        into.id[i] = static_cast<float>(end.surface.object + 1);
+        into.depth[i] = static_cast<float>(glm::dot(seen, camera.forward));
+        into.length[i] = static_cast<float>(end.length);
+    } else if (perspective) {
+        seen = end.at.p;
+    }
+    const double forward = glm::dot(seen, camera.forward);
+    const double scale = perspective ? 1 / forward : 1;
+    if (!perspective || forward > 0) {
+        const dvec2 shown = camera.pixel({glm::dot(seen, camera.right) * scale, glm::dot(seen, camera.up) * scale});
+        // a straight ray's own rounding is no displacement
+        const dvec2 d = shown - center;
+        into.u[i] = std::abs(d.x) < kRoundingShift ? 0.0f : static_cast<float>(d.x);
+        into.v[i] = std::abs(d.y) < kRoundingShift ? 0.0f : static_cast<float>(d.y);
+    }
+    if (bundled)
+        into.magnification[i] = static_cast<float>(magnification(pixels, direction, end.at, bundle, end.length));
 }
 
 }  // namespace eikonal::reference

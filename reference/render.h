@@ -1,49 +1,85 @@
-/// Renders one frame of a scene with straight rays: the undistorted plate and the depth that the warp takes as input.
+/// Renders one frame of a scene: with straight rays, the undistorted plate and the depth that the warp takes as input;
+/// with bent ones, what a camera in that air sees, and by how much every pixel is displaced.
 ///
-/// Output: colour R, G, B (linear, half) and A = 1, the mean over each pixel's square (box filter); Z (float), the
-/// axial depth in metres of the surface at the pixel's *centre*, infinity where there is only background. So colour is
-/// antialiased and depth never mixes two surfaces. Row 0 on top.
+/// Output: colour R, G, B (linear) and A = 1, the mean over each pixel's square (box filter). Everything else belongs
+/// to the ray through the pixel's *centre* and never mixes two surfaces:
+///     Z          axial depth of the surface seen [m]; infinity where there is only background
+///     length     of the ray's path to it [m]; infinity likewise                                   (bent rays, here and
+///     below) u, v       pixel where straight rays show that same point, minus this pixel: out(p) = in(p + d), y down
+///     [px].
+///                Background is infinitely far in perspective, at `far` in orthographic views
+///     id         1 + index of the object seen, 0 for background, -1 for a ray that its step budget ended, -2 for one
+///                that came to where n <= 0: both are black
+///     steps      of the integrator
+///     error      its estimate of the error of u, v [px]
+///     magnification   (if asked for) of distant things, in area; negative: folded, mirrored (ray_differential.h)
 ///
 /// The same bytes for any number of threads: every sample is a pure function of scene, frame, pixel and its index.
 /// Not finite radiance never leaves: it is limited to 0 … the largest half.
 ///
-/// Failures: UserError for the scene (geometry.h, shading.h, camera.h), FrameError when a file cannot be written.
+/// Failures: UserError for the scene (geometry.h, shading.h, camera.h, noise/field.h), FrameError when a frame cannot
+/// be rendered.
 #pragma once
 
 #include <functional>
 
-#include "reference/shading.h"
+#include "reference/ray_tree.h"
+#include "reference/scene_air.h"
+#include "reference/shadowgraph.h"
 #include "warp/scene/camera.h"
 
 namespace eikonal::reference {
 
-/// Rows of width * height pixels.
+struct RenderSettings {
+    int samples = 16;  ///< of colour a pixel >= 1
+    bool straight = false;
+    RaySettings rays;
+    bool magnification = false;
+    int light_rays = 0;  ///< across a side of each quad, for the shadowgraph (shadowgraph.h); 0: straight sunlight
+    bool colour = true;  ///< false: only what belongs to pixels' centres
+};
+
+/// Planes of width * height pixels. Those of bent rays are empty for straight ones.
 struct RenderedFrame {
     int width = 0, height = 0;
     std::vector<float> color;  ///< R G B A, interleaved
     std::vector<float> depth;  ///< axial [m]
+    std::vector<float> length, u, v, id, steps, error, magnification;
+
+    /// Rays through pixels' centres that ended without an answer, and that were folded.
+    std::size_t trapped() const;
+    std::size_t without_index() const;
+    std::size_t folded() const;
 };
 
 class Renderer {
   public:
-    /// Reads meshes and textures once for all frames. samples: a pixel, >= 1.
-    Renderer(const Scene& scene, int samples);
+    /// Reads meshes and textures, and makes the media, once for all frames.
+    Renderer(const Scene& scene, const RenderSettings& settings);
 
     /// tile_done, if given, is called after each of tile_count() tiles, from any thread.
     RenderedFrame render(int frame, const std::function<void()>& tile_done = {}) const;
     int tile_count() const;
 
+    Camera camera(int frame) const { return path_.at(frame); }
+
   private:
     struct Tile {
         int x0, y0, x1, y1;
     };
-    void render_tile(const Camera& camera, int frame, const Tile& tile, RenderedFrame& into) const;
+    struct Air;
+    void render_tile(const Camera& camera, int frame, const Tile& tile, const Air* air, RenderedFrame& into) const;
+    dvec3 colour(const Camera& camera, int frame, int x, int y, const Air* air) const;
+    void center_straight(const Camera& camera, int x, int y, std::size_t i, RenderedFrame& into) const;
+    void center_bent(const Camera& camera, int x, int y, const Air& air, std::size_t i, RenderedFrame& into) const;
 
     Scene scene_;
-    int width_, height_, samples_;
+    RenderSettings settings_;
+    int width_, height_;
     CameraPath path_;
     Geometry geometry_;
     Shading shading_;
+    std::optional<SceneAir> air_;  ///< none for straight rays
 };
 
 /// The straight ray of a pixel position: origin and direction. The direction is not of unit length but has axial
@@ -53,13 +89,7 @@ struct CameraRay {
 };
 CameraRay camera_ray(const Camera& camera, double px, double py);
 
-/// Exact: ZIP. Compact, for small sample files: colour DWAA (slightly lossy), Z rounded to within kCompactDepthError.
-enum class Storage { Exact, Compact };
-
-/// Relative.
-inline constexpr double kCompactDepthError = 0x1p-18;
-
-/// Writes R, G, B, A (half) and Z (float) as one EXR. FrameError.
-void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, Storage storage);
+/// How camera_ray changes from pixel to pixel: of the origin, and of the unit direction.
+Bundle pixel_bundle(const Camera& camera, double px, double py);
 
 }  // namespace eikonal::reference

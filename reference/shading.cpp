@@ -10,6 +10,7 @@
 #include "noise/error.h"
 #include "noise/portable_math.h"
 #include "reference/direction.h"
+#include "reference/shadowgraph.h"
 #include "warp/image/picture.h"
 
 namespace eikonal::reference {
@@ -84,12 +85,12 @@ Shading::Shading(const Scene& scene, const Geometry& geometry) : scene_(scene), 
         sky_.emplace(*scene.background.image, fmt::format("{}: [background]", scene.file.string()));
 }
 
-dvec3 Shading::surface(const Hit& hit, const LightSample& sample) const {
+dvec3 Shading::surface(const Hit& hit, const LightSample& sample, const Shadowgraph* bent) const {
     const Material& material = geometry_.materials()[static_cast<std::size_t>(hit.material)];
     const dvec3 color = albedo(hit);
     if (!scene_.light || material.unlit) return color + material.emission;
     const dvec3 to_sun = sun_direction(sample.sun);
-    return material.emission + color * (sunlight(hit, to_sun) + skylight(hit, to_sun, sample.sky));
+    return material.emission + color * (sunlight(hit, to_sun, bent) + skylight(hit, to_sun, sample.sky));
 }
 
 dvec3 Shading::background(dvec3 direction) const {
@@ -111,9 +112,11 @@ dvec3 Shading::sun_direction(dvec2 sample) const {
     return to_sun_ + r * (c * sun_right_ + s * sun_up_);
 }
 
-dvec3 Shading::sunlight(const Hit& hit, dvec3 to_sun) const {
+dvec3 Shading::sunlight(const Hit& hit, dvec3 to_sun, const Shadowgraph* bent) const {
     const double cosine = glm::dot(hit.shading_normal, to_sun);
     if (cosine <= 0 || glm::dot(hit.normal, to_sun) <= 0) return dvec3(0);
+    if (bent)
+        if (const auto irradiance = bent->irradiance(hit)) return *irradiance * cosine * scene_.light->color;
     if (geometry_.occluded(geometry_.leave(hit), to_sun, 0, kInfinity)) return dvec3(0);
     return cosine * scene_.light->color;
 }

@@ -39,20 +39,22 @@ class Texture {
     std::vector<float> rgb_;  ///< row 0 on top
 };
 
+class Shadowgraph;
+
 class Shading {
   public:
     /// Reads every texture. Keeps references to both arguments.
     Shading(const Scene& scene, const Geometry& geometry);
 
-    /// Radiance that leaves `hit` towards where the ray came from.
-    dvec3 surface(const Hit& hit, const LightSample& sample) const;
+    /// Radiance that leaves `hit` towards where the ray came from. sunlight: bent on its way, or null for straight.
+    dvec3 surface(const Hit& hit, const LightSample& sample, const Shadowgraph* sunlight = nullptr) const;
 
     /// Radiance of the background in a direction.
     dvec3 background(dvec3 direction) const;
 
   private:
     dvec3 albedo(const Hit& hit) const;
-    dvec3 sunlight(const Hit& hit, dvec3 to_sun) const;
+    dvec3 sunlight(const Hit& hit, dvec3 to_sun, const Shadowgraph* bent = nullptr) const;
     dvec3 skylight(const Hit& hit, dvec3 to_sun, dvec2 sample) const;
     dvec3 sun_direction(dvec2 sample) const;
 

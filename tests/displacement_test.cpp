@@ -24,14 +24,14 @@ using Map = std::vector<float>;
 
 Map map_of(const Displacer& displacer, double frame, const PixelWindow& window, double D, double gain = 1) {
     Map uv(2 * window.area());
-    displacer.at(frame, D, D).map(window, D, DepthMeeting::Own, gain, uv.data());
+    displacer.at(frame, D, D, gain).map(window, D, DepthMeeting::Own, uv.data());
     return uv;
 }
 
 Map map_of(const Displacer& displacer, double frame, const PixelWindow& window, const DepthPlane& plane,
            DepthMeeting how) {
     Map uv(2 * window.area());
-    displacer.at(frame, plane.nearest(), plane.farthest()).map(window, &plane, how, 1, uv.data());
+    displacer.at(frame, plane.nearest(), plane.farthest()).map(window, &plane, how, uv.data());
     return uv;
 }
 
@@ -80,6 +80,7 @@ Scene orthographic(const TurbulenceSpec& spec, const dvec3& forward, const dvec3
 
 DisplacerSettings small(double far, std::optional<Model> model = {}) {
     DisplacerSettings s;
+    s.negligible = 0;  // scenes of any strength
     s.width = 24;
     s.height = 18;
     s.far = far;
@@ -281,6 +282,7 @@ Scene long_view(double alpha = 0) {
 
 DisplacerSettings sized(int width, int height, double far) {
     DisplacerSettings s;
+    s.negligible = 0;  // scenes of any strength
     s.width = width;
     s.height = height;
     s.far = far;
@@ -385,12 +387,12 @@ TEST(Displacement, PiecesThreadsAndFramesGiveTheSameBits) {
         const DepthSource sources[] = {far, &plane};
         for (const DepthSource& source : sources) {
             Map whole(2 * window.area());
-            instant.map(window, source, DepthMeeting::March, 1, whole.data());
+            instant.map(window, source, DepthMeeting::March, whole.data());
             for (const PixelWindow& part :
                  {PixelWindow{-9, -7, 108, 1}, {3, 5, 17, 61}, {-2, 60, 1, 1}, {64, -7, 35, 84}}) {
                 Map piece(2 * part.area());
                 const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-                displacer.at(7.5, 0.3 * far, far).map(part, source, DepthMeeting::March, 1, piece.data());
+                displacer.at(7.5, 0.3 * far, far).map(part, source, DepthMeeting::March, piece.data());
                 for (int y = 0; y < part.height; ++y) {
                     const auto at =
                         2 * static_cast<std::size_t>((part.y0 + y - window.y0) * window.width + part.x0 - window.x0);

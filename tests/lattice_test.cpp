@@ -406,7 +406,7 @@ TEST(LatticeGeometry, RefusesTheImpossibleBeforeAllocating) {
     // a single row that no int counts, however much memory there is
     EXPECT_NE(message(box(2, 2, 131068, 70000), ~std::uint64_t{0}).find("nz = 131068 times nt = 70000"),
               std::string::npos);
-    EXPECT_EQ(message(box(2, 2, 131068, 30000), ~std::uint64_t{0}), "");
+    EXPECT_EQ(message(box(2, 2, 131068, 15000), ~std::uint64_t{0}), "");
     LatticeGeometry g = box(4, 4, 4, 4);
     g.period[2] = 0;
     EXPECT_NE(message(g, kLimit).find("period z"), std::string::npos);

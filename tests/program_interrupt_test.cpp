@@ -88,6 +88,28 @@ TEST_F(InterruptTest, Killed) {
     check_resumes();
 }
 
+// The tracer stops within a frame, which may take it hours; the frames before are whole and kept.
+TEST_F(InterruptTest, TracerStopsWithinAFrame) {
+    write_text("scene.toml", "[camera]\nresolution = [1280, 720]\n[[object]]\nshape = \"sphere\"\nradius = 1\n");
+    const auto trace = [](const std::string& frames, const std::string& samples) {
+        return Words{EIKONAL_TRACE_PROGRAM, "render",   "scene.toml", "-o",        "o.####.exr",
+                     "--straight",          "--frames", frames,       "--samples", samples};
+    };
+    ASSERT_EQ(tool(trace("1-2", "1")).status, 0);
+    const std::string first = bytes("o.0001.exr");
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const pid_t process = start_tool(trace("1-3", "512"));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+        kill(process, signal);
+        const Ended ended = finish(process);
+        EXPECT_EQ(ended.status, 1);
+        EXPECT_EQ(ended.lines().back(), "eikonal-trace: frame 3: interrupted; the same command goes on") << ended.err;
+        EXPECT_EQ(finished(), (Words{"o.0001.exr", "o.0002.exr"}));
+        EXPECT_EQ(hidden(), 0);
+    }
+    EXPECT_EQ(bytes("o.0001.exr"), first);
+}
+
 TEST_F(InterruptTest, MovieLeavesNothing) {
     refused(interrupt({SIGINT}, "o.mp4", false), 1, {"interrupted after", "the movie was not written"});
     EXPECT_EQ(finished(), Words{});

@@ -108,8 +108,12 @@ Ended Program::finish(pid_t process) const {
 Ended Program::run(Words words, long limit) const {
     return finish(start(std::move(words), limit));
 }
+pid_t Program::start_tool(Words words) const {
+    return launch(folder_, words, 0);
+}
+
 Ended Program::tool(Words words) const {
-    return finish(launch(folder_, words, 0));
+    return finish(start_tool(std::move(words)));
 }
 
 void Program::refused(const Ended& ended, int status, std::initializer_list<std::string> fragments) const {

@@ -56,6 +56,7 @@ class Program : public testing::Test {
     Ended finish(pid_t process) const;
     /// The same for other tools, given with their name.
     Ended tool(Words words) const;
+    pid_t start_tool(Words words) const;
 
     /// Expects this status and exactly one line on stderr, which begins with "eikonal: " and has all the fragments.
     void refused(const Ended& ended, int status, std::initializer_list<std::string> fragments) const;

@@ -131,6 +131,9 @@ TEST_F(UsageTest, ImpossibleLatticesAreRefusedBeforeMemoryIsTaken) {
     lattice("[16, 16, 16]", {"lattice"});
     lattice("[8192, 8192, 8192, 64]", {"lattice", "GB", "available"});
     lattice("[1000000, 1000000, 1000000, 1000000]", {"lattice", "1000000"});
+    refused(run({"field", "--scene", "air.toml", "-o", "f.####.exr", "--set", "medium.0.form=gradient-noise", "--set",
+                 "medium.0.lattice=[60000, 60000, 2, 2]"}),
+            2, {"slices of 60000 x 60000", "GB", "available", "lattice"});
     wrong({"map", "-o", "m.exr", "--set", "camera.resolution=[65536, 65536]"},
           {"a frame of this size", "GB", "available"});
 }

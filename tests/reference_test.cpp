@@ -11,12 +11,21 @@
 
 #include "noise/error.h"
 #include "reference/direction.h"
+#include "reference/frame_file.h"
 #include "reference/render.h"
 #include "reference/sampler.h"
 #include "warp/image/picture.h"
 
 namespace eikonal::reference {
 namespace {
+
+/// Straight rays.
+RenderSettings straight(int samples) {
+    RenderSettings settings;
+    settings.samples = samples;
+    settings.straight = true;
+    return settings;
+}
 
 /// A folder of its own for each test, removed with it.
 class ReferenceTest : public testing::Test {
@@ -57,7 +66,7 @@ Camera camera_of(const Scene& scene) {
 
 /// Compares every pixel's depth with `expected` (t along a ray of axial component 1; infinite: background).
 void expect_depth(const Scene& scene, const std::function<double(const CameraRay&)>& expected) {
-    const RenderedFrame frame = Renderer(scene, 1).render(1);
+    const RenderedFrame frame = Renderer(scene, straight(1)).render(1);
     const Camera camera = camera_of(scene);
     int hits = 0;
     for (int y = 0; y < kHeight; ++y) {
@@ -159,7 +168,7 @@ TEST_F(ReferenceTest, FarFromTheOriginOfTheWorld) {
     Scene scene = scene_with({sphere});
     scene.camera.position += away;
     scene.camera.look_at += away;
-    const RenderedFrame frame = Renderer(scene, 1).render(1);
+    const RenderedFrame frame = Renderer(scene, straight(1)).render(1);
     const double distance = glm::distance(dvec3(1.3, 2.7, 4.1), dvec3(0.4, 1.9, -10));
     // The middle of the picture lies between four pixels, at most half a pixel's diagonal from the axis.
     EXPECT_NEAR(static_cast<double>(frame.depth[kHeight / 2 * kWidth + kWidth / 2]), distance - 2, 0.02);
@@ -176,7 +185,7 @@ TEST_F(ReferenceTest, OrthographicDepthAndPlace) {
     scene.camera.width = 16;  // 4 pixels a metre
     scene.camera.position = {0, 0, 5};
     scene.camera.look_at = {0, 0, 0};
-    const RenderedFrame frame = Renderer(scene, 1).render(1);
+    const RenderedFrame frame = Renderer(scene, straight(1)).render(1);
     int hits = 0;
     for (const float z : frame.depth)
         if (std::isfinite(z)) {
@@ -197,7 +206,7 @@ TEST_F(ReferenceTest, PixelsAndGeometryAgree) {
         const CameraRay ray = camera_ray(camera, p.x, p.y);
         scene.objects[0].center = ray.origin + 50.0 * ray.direction;
         scene.objects[0].radius = 0.2;  // 0.35 pixel
-        const RenderedFrame frame = Renderer(scene, 4).render(1);
+        const RenderedFrame frame = Renderer(scene, straight(4)).render(1);
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x)
                 EXPECT_EQ(std::isfinite(frame.depth[static_cast<std::size_t>(y * kWidth + x)]),
@@ -220,7 +229,7 @@ TEST_F(ReferenceTest, TextureIsUpright) {
     scene.camera.resolution = {8, 8};
     scene.camera.position = {0, 0, 5};
     scene.camera.look_at = {0, 0, 0};
-    const RenderedFrame frame = Renderer(scene, 256).render(1);
+    const RenderedFrame frame = Renderer(scene, straight(256)).render(1);
     const auto pixel = [&](int x, int y) {
         const std::size_t i = static_cast<std::size_t>(4 * (y * 8 + x));
         return dvec3(frame.color[i], frame.color[i + 1], frame.color[i + 2]);
@@ -242,7 +251,7 @@ TEST_F(ReferenceTest, SunSkyAndShadow) {
     scene.camera.look_at = {0, 0, -0.5};
     scene.light = LightSpec{{0, -1, 0}, {0.7, 0.7, 0.7}, {0.2, 0.2, 0.2}};
     const std::size_t middle = 4 * (kHeight / 2 * kWidth + kWidth / 2);
-    EXPECT_NEAR(Renderer(scene, 16).render(1).color[middle], 0.9, 1e-5);
+    EXPECT_NEAR(Renderer(scene, straight(16)).render(1).color[middle], 0.9, 1e-5);
 
     ObjectSpec roof;
     roof.shape = ObjectShape::Quad;
@@ -251,7 +260,7 @@ TEST_F(ReferenceTest, SunSkyAndShadow) {
     roof.size = {400, 400};
     roof.color = {0, 0, 0};
     scene.objects.push_back(roof);
-    EXPECT_NEAR(Renderer(scene, 64).render(1).color[middle], 0, 1e-3);
+    EXPECT_NEAR(Renderer(scene, straight(64)).render(1).color[middle], 0, 1e-3);
 }
 
 TEST_F(ReferenceTest, SameBytesForAnyNumberOfThreads) {
@@ -260,7 +269,7 @@ TEST_F(ReferenceTest, SameBytesForAnyNumberOfThreads) {
     ball.center = {0, 1.5, -6};
     Scene scene = scene_with({floor, ball});
     scene.light = LightSpec{};
-    const Renderer renderer(scene, 8);
+    const Renderer renderer(scene, straight(8));
     RenderedFrame one, two;
     {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
@@ -268,7 +277,7 @@ TEST_F(ReferenceTest, SameBytesForAnyNumberOfThreads) {
     }
     {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 4);
-        two = Renderer(scene, 8).render(7);
+        two = Renderer(scene, straight(8)).render(7);
     }
     EXPECT_EQ(one.color, two.color);
     EXPECT_EQ(one.depth, two.depth);
@@ -277,7 +286,7 @@ TEST_F(ReferenceTest, SameBytesForAnyNumberOfThreads) {
 
 TEST_F(ReferenceTest, WrittenFileHoldsHalfColorAndExactDepth) {
     ObjectSpec floor;
-    const RenderedFrame frame = Renderer(scene_with({floor}), 1).render(1);
+    const RenderedFrame frame = Renderer(scene_with({floor}), straight(1)).render(1);
     for (const Storage storage : {Storage::Exact, Storage::Compact}) {
         write_frame(folder_ / "f.exr", frame, storage);
         const Picture picture = read_picture(folder_ / "f.exr");
@@ -323,12 +332,12 @@ void expect_user_error(const std::function<void()>& action, const std::vector<st
 }
 
 TEST_F(ReferenceTest, BadScenesNameWhatIsWrong) {
-    expect_user_error([] { Renderer(scene_with({}), 1); }, {"scene.toml", "[[object]]"});
+    expect_user_error([] { Renderer(scene_with({}), straight(1)); }, {"scene.toml", "[[object]]"});
     ObjectSpec mesh;
     mesh.shape = ObjectShape::Mesh;
     const auto render_mesh = [&](const std::filesystem::path& file) {
         mesh.file = file;
-        Renderer(scene_with({mesh}), 1);
+        Renderer(scene_with({mesh}), straight(1));
     };
     expect_user_error([&] { render_mesh("nowhere/ship.obj"); }, {"nowhere/ship.obj", "cannot read"});
     expect_user_error([&] { render_mesh(folder_); }, {"cannot read"});
@@ -339,12 +348,12 @@ TEST_F(ReferenceTest, BadScenesNameWhatIsWrong) {
                       {"lib.obj", "gone.mtl"});
     ObjectSpec plane;
     plane.texture = folder_ / "gone.png";
-    expect_user_error([&] { Renderer(scene_with({plane}), 1); }, {"scene.toml", "gone.png"});
+    expect_user_error([&] { Renderer(scene_with({plane}), straight(1)); }, {"scene.toml", "gone.png"});
     plane.texture = write("broken.png", "not a picture");
-    expect_user_error([&] { Renderer(scene_with({plane}), 1); }, {"scene.toml", "broken.png"});
+    expect_user_error([&] { Renderer(scene_with({plane}), straight(1)); }, {"scene.toml", "broken.png"});
     Scene sky = scene_with({ObjectSpec{}});
     sky.background.image = folder_ / "gone.exr";
-    expect_user_error([&] { Renderer(sky, 1); }, {"[background]", "gone.exr"});
+    expect_user_error([&] { Renderer(sky, straight(1)); }, {"[background]", "gone.exr"});
 }
 
 TEST_F(ReferenceTest, AnglesMatchTheLibrary) {

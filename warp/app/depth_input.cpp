@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "noise/error.h"
@@ -11,15 +10,14 @@
 namespace eikonal {
 namespace {
 
-constexpr double kDefaultFar = 1000;
-
 double parse_part(const std::string& all, std::string_view text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        throw UserError(fmt::format("--ground: '{}' must be HEIGHT,HORIZON: metres above the ground, and the horizon's row from the top in "
-                                    "pixels or as a part of the height like 55%", all));
-    return value;
+    const std::optional<double> value = parse_number(text);
+    if (!value)
+        throw UserError(fmt::format(
+            "--ground: '{}' must be HEIGHT,HORIZON: metres above the ground, and the horizon's row from the top in "
+            "pixels or as a part of the height like 55%",
+            all));
+    return *value;
 }
 
 }  // namespace
@@ -40,11 +38,14 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
         options_.channel = split.channel;
         inside_input_ = split.file.empty();
         if (inside_input_ && split.channel.empty())
-            throw UserError(fmt::format("--depth: '{}' names neither a file nor a channel; give FILE, FILE:CHANNEL or :CHANNEL", *a.depth));
+            throw UserError(fmt::format(
+                "--depth: '{}' names neither a file nor a channel; give FILE, FILE:CHANNEL or :CHANNEL", *a.depth));
         if (!inside_input_) {
             if (is_movie(split.file))
-                throw UserError(fmt::format("--depth: '{}' is a movie, which cannot hold depth in metres; make a sequence of it first, e.g. "
-                                            "ffmpeg -i {} depth.%04d.png", split.file.string(), split.file.filename().string()));
+                throw UserError(fmt::format(
+                    "--depth: '{}' is a movie, which cannot hold depth in metres; make a sequence of it first, e.g. "
+                    "ffmpeg -i {} depth.%04d.png",
+                    split.file.string(), split.file.filename().string()));
             files_ = FilePattern::parse(split.file);
         }
     } else if (a.distance) {
@@ -55,15 +56,18 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
         std::string_view horizon = std::string_view(*a.ground).substr(comma + 1);
         const bool fraction = horizon.ends_with('%');
         if (fraction) horizon.remove_suffix(1);
-        ground_ = Ground{parse_part(*a.ground, std::string_view(*a.ground).substr(0, comma)), parse_part(*a.ground, horizon), fraction};
+        ground_ = Ground{parse_part(*a.ground, std::string_view(*a.ground).substr(0, comma)),
+                         parse_part(*a.ground, horizon), fraction};
         if (fraction) ground_->horizon /= 100;
-        if (!(ground_->height > 0)) throw UserError(fmt::format("--ground: the camera's height {} must be more than 0", ground_->height));
+        if (!(ground_->height > 0))
+            throw UserError(fmt::format("--ground: the camera's height {} must be more than 0", ground_->height));
     } else if (plate.ground) {
         ground_ = Ground{(*plate.ground)[0], (*plate.ground)[1], true};
     } else {
         constant_ = plate.distance.value_or(plate.far.value_or(kDefaultFar));
     }
-    const std::optional<double> range_far = a.range ? std::optional(std::max((*a.range)[0], (*a.range)[1])) : std::nullopt;
+    const std::optional<double> range_far =
+        a.range ? std::optional(std::max((*a.range)[0], (*a.range)[1])) : std::nullopt;
     if (a.far)
         far_ = *a.far;
     else if (constant_)
@@ -71,7 +75,9 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
     else
         far_ = range_far.value_or(plate.far.value_or(kDefaultFar));
     if (constant_ && *constant_ > far_)
-        throw UserError(fmt::format("--far {:g} is nearer than the distance {:g}; give a larger --far or a smaller --distance", far_, *constant_));
+        throw UserError(
+            fmt::format("--far {:g} is nearer than the distance {:g}; give a larger --far or a smaller --distance",
+                        far_, *constant_));
     options_.far = far_;
     if (a.depth) check_depth_options(options_);
 }
@@ -97,8 +103,8 @@ DepthPlane DepthInput::ground_plane(const PixelWindow& data, const PixelWindow& 
     return {data, std::move(metres)};
 }
 
-DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
-                             const PixelWindow& display, const Camera& camera) const {
+DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesystem::path& input_file,
+                             const PixelWindow& data, const PixelWindow& display, const Camera& camera) const {
     if (constant_) return {data, std::vector<float>(data.area(), static_cast<float>(*constant_))};
     if (ground_) return ground_plane(data, display, camera);
     if (inside_input_ && input == nullptr)
@@ -108,7 +114,8 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
     const auto far = static_cast<float>(far_);
     for (int y = 0; y < data.height; ++y)
         for (int x = 0; x < data.width; ++x) {
-            float& z = buffer.metres[static_cast<std::size_t>(y) * static_cast<std::size_t>(data.width) + static_cast<std::size_t>(x)];
+            float& z = buffer.metres[static_cast<std::size_t>(y) * static_cast<std::size_t>(data.width) +
+                                     static_cast<std::size_t>(x)];
             if (buffer.along_ray && camera.projection == Projection::Perspective) {
                 const dvec2 s = camera.slope(data.x0 + x + 0.5, data.y0 + y + 0.5);
                 z = static_cast<float>(z / std::sqrt(1 + s.x * s.x + s.y * s.y));

@@ -1,4 +1,5 @@
-/// Where the picture's objects are, frame by frame: --distance, --depth, --ground or the scene's [plate], as axial depth.
+/// Where the picture's objects are, frame by frame: --distance, --depth, --ground or the scene's [plate], as axial
+/// depth.
 #pragma once
 
 #include <memory>
@@ -25,7 +26,8 @@ class DepthInput {
     /// Decides the source. UserError: ill-formed values, nothing that tells a distance.
     DepthInput(const DepthArguments& arguments, const PlateSpec& plate);
 
-    /// Greatest distance of the shot [m]: --far, else the map's range, the constant distance, the scene's, or 1000.
+    /// Greatest distance of the shot [m]: --far, else the map's range, the constant distance, the scene's, or
+    /// kDefaultFar.
     double far() const { return far_; }
     /// Whether one distance holds for all pixels.
     std::optional<double> constant() const { return constant_; }
@@ -35,7 +37,8 @@ class DepthInput {
     /// One line for --verbose.
     std::string description() const;
 
-    /// Axial depth on `data`, limited to far(). `input`: the frame's picture, where the map is a channel of it (or null).
+    /// Axial depth on `data`, limited to far(). `input`: the frame's picture, where the map is a channel of it (or
+    /// null).
     DepthPlane plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
                      const PixelWindow& display, const Camera& camera) const;
 

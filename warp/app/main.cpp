@@ -9,7 +9,7 @@
 
 #include "noise/error.h"
 #include "warp/app/commands.h"
-#include "warp/app/interrupt.h"
+#include "warp/image/interrupt.h"
 
 namespace {
 
@@ -23,7 +23,7 @@ int run_program(int argc, char** argv) {
     using namespace eikonal;
     constexpr int kFrameFailed = 1, kWrongUsage = 2;
     try {
-        catch_interrupts();
+        catch_interrupts("eikonal");
         return std::visit([](const auto& options) { return run(options); }, parse_options(argc, argv));
     } catch (const UserError& error) {
         fmt::print(stderr, "eikonal: {}\n", error.what());

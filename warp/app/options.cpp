@@ -43,11 +43,7 @@ constexpr const char* kMore = "`eikonal COMMAND --help` tells more.";
 template <class T>
 using Names = std::vector<std::pair<std::string, T>>;
 
-const Names<Model> kModels{{"table", Model::Table},
-                           {"tables", Model::Tables},
-                           {"spectral", Model::Spectral},
-                           {"screens", Model::Screens},
-                           {"first-order", Model::FirstOrder}};
+const Names<Model> kModels(kModelNames.begin(), kModelNames.end());
 const Names<Filter> kFilters{
     {"bilinear", Filter::Bilinear}, {"cubic", Filter::Cubic}, {"lanczos3", Filter::Lanczos3}, {"area", Filter::Area}};
 const Names<Edge> kEdges{
@@ -70,8 +66,8 @@ std::string joined(const Names<T>& names) {
 std::string suggestion(std::string_view word, const std::vector<std::string>& valid,
                        const std::string& otherwise = "") {
     const std::vector<std::string_view> views(valid.begin(), valid.end());
-    const std::string_view near = scene_file::nearest(word, views);
-    return near.empty() ? otherwise : fmt::format("; did you mean '{}'?", near);
+    const std::string meant = scene_file::did_you_mean(word, views);
+    return meant.empty() ? otherwise : meant;
 }
 
 /// An option whose value is one of a list of names.
@@ -97,11 +93,9 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target, const Na
 }
 
 double number(const std::string& option, std::string_view text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        throw UserError(fmt::format("{}: '{}' is not a number", option, text));
-    return value;
+    const std::optional<double> value = parse_number(text);
+    if (!value) throw UserError(fmt::format("{}: '{}' is not a number", option, text));
+    return *value;
 }
 
 /// A number with a range; `allowed` says it in words.
@@ -125,6 +119,9 @@ bool positive(double v) {
 bool not_negative(double v) {
     return v >= 0;
 }
+bool small_count(double v) {
+    return v >= 1 && v <= 1024 && v == std::floor(v);
+}
 
 std::array<double, 2> pair_of(const std::string& option, const std::string& text) {
     const auto comma = text.find(',');
@@ -134,7 +131,13 @@ std::array<double, 2> pair_of(const std::string& option, const std::string& text
             number(option, std::string_view(text).substr(comma + 1))};
 }
 
+/// Heading under which help lists the options that follow.
+void begin_group(CLI::App& app, const std::string& name) {
+    app.option_defaults()->group(name);
+}
+
 void add_scene(CLI::App& app, SceneOptions& o) {
+    begin_group(app, "Scene");
     auto* scene =
         app.add_option("--scene", o.scene, "scene file (TOML): media, camera, time, optics")->type_name("FILE");
     auto* preset =
@@ -157,11 +160,10 @@ void add_scene(CLI::App& app, SceneOptions& o) {
         ->type_name("N");
     add_number(app, "--fov", o.fov, "DEG", "horizontal field of view, instead of the scene's",
                "between 0 and 180 degrees", [](double v) { return v > 0 && v < 180; });
-    for (const char* name : {"--scene", "--preset", "--set", "--seed", "--fov"}) app.get_option(name)->group("Scene");
 }
 
 void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
-    const std::string group = "Depth";
+    begin_group(app, "Depth");
     add_number(app, "--distance", o.distance, "M", "constant distance along the axis [m]", "more than 0", positive);
     app.add_option("--depth", o.depth, with_input ? "depth map; :CHANNEL alone names a channel of INPUT" : "depth map")
         ->type_name("FILE[:CHANNEL]");
@@ -173,89 +175,64 @@ void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
     app.add_option("--ground", o.ground,
                    "flat ground: camera height [m] and the horizon's row from the top, in pixels or as 55%")
         ->type_name("HEIGHT,HORIZON");
-    add_number(app, "--far", o.far, "M", "distance of the background (default: the scene's, else 1000)", "more than 0",
+    add_number(app, "--far", o.far, "M",
+               fmt::format("distance of the background (default: the scene's, else {:g})", kDefaultFar), "more than 0",
                positive);
     add_choice(app, "--depth-meeting", o.meeting, kMeetings,
                "how a bent ray meets the depth map: followed to the first surface (default), iterated, or the pixel's "
                "own depth");
-    for (const char* name :
-         {"--distance", "--depth", "--depth-type", "--depth-range", "--ground", "--far", "--depth-meeting"})
-        app.get_option(name)->group(group);
 }
 
 void add_strength(CLI::App& app, StrengthOptions& o) {
+    begin_group(app, "Displacement");
     app.add_option("--mask", o.mask, "matte that scales the displacement, 0 … 1")->type_name("FILE[:CHANNEL]");
     add_number(app, "--rms", o.rms, "PX", "scale the displacement to this rms at --far, fixed over the shot",
                "0 or more", not_negative);
     add_number(app, "--gain", o.gain, "X", "multiply the displacement", "0 or more", not_negative);
     add_choice(app, "--model", o.model, kModels, "how displacement is computed (default: what suits each medium)");
     app.add_option("--stmap", o.stmap, "also write the map as STMap (Nuke, Blender)")->type_name("FILE");
-    for (const char* name : {"--mask", "--rms", "--gain", "--model", "--stmap"})
-        app.get_option(name)->group("Displacement");
 }
 
 void add_run(CLI::App& app, RunOptions& o) {
+    begin_group(app, "Run");
     app.add_option("--frames", o.frames, "1001-1100, 1-9x2 or 1-9:2 (step), lists with commas")->type_name("RANGE");
-    app.add_option_function<std::string>(
-           "--threads",
-           [&o](const std::string& text) {
-               const double n = number("--threads", text);
-               if (n < 1 || n > 1024 || n != std::floor(n))
-                   throw UserError(fmt::format("--threads: {} must be a whole number from 1 to 1024", text));
-               o.threads = static_cast<int>(n);
-           },
-           "processors to use (default: all); the result does not depend on it")
-        ->type_name("N");
+    add_number(app, "--threads", o.threads, "N", "processors to use (default: all); the result does not depend on it",
+               "a whole number from 1 to 1024", small_count);
     app.add_flag("--overwrite", o.overwrite, "make every frame anew (default: keep finished ones)");
     app.add_flag("--skip-bad-frames", o.skip_bad_frames, "go on after a frame that cannot be read or written");
     app.add_flag("--verbose,-v", o.verbose, "say what is computed and why");
     add_choice(app, "--progress", o.progress, kProgress, "how progress is shown on stderr");
     app.add_option("--report", o.report, "write what was done as JSON")->type_name("FILE");
-    for (const char* name :
-         {"--frames", "--threads", "--overwrite", "--skip-bad-frames", "--verbose", "--progress", "--report"})
-        app.get_option(name)->group("Run");
 }
 
 void add_warp(CLI::App& app, WarpOptions& o) {
-    app.add_option("INPUT", o.input, "image, sequence or movie")->required()->group("Files");
-    app.add_option("-o,--output", o.output, "image, sequence or movie")
-        ->required()
-        ->type_name("OUTPUT")
-        ->group("Files");
+    begin_group(app, "Files");
+    app.add_option("INPUT", o.input, "image, sequence or movie")->required();
+    app.add_option("-o,--output", o.output, "image, sequence or movie")->required()->type_name("OUTPUT");
     add_scene(app, o.scene);
     add_depth(app, o.depth, true);
     add_strength(app, o.strength);
     app.add_option("--displacement", o.displacement, "also write the map as channels u, v in pixels")
-        ->type_name("FILE")
-        ->group("Displacement");
+        ->type_name("FILE");
+    begin_group(app, "Picture");
     add_choice(app, "--filter", o.filter, kFilters, "reconstruction (default cubic)");
     add_choice(app, "--edge", o.edge, kEdges, "what lies outside the picture (default mirror)");
     add_number(app, "--shutter", o.shutter, "FRACTION", "motion blur: part of the frame time that the shutter is open",
                "from 0 to 1", [](double v) { return v >= 0 && v <= 1; });
-    app.add_option_function<std::string>(
-           "--samples",
-           [&o](const std::string& text) {
-               const double n = number("--samples", text);
-               if (n < 1 || n > 1024 || n != std::floor(n))
-                   throw UserError(fmt::format("--samples: {} must be a whole number from 1 to 1024", text));
-               o.samples = static_cast<int>(n);
-           },
-           "instants within the shutter (default 9 with --shutter)")
-        ->type_name("N");
+    add_number(app, "--samples", o.samples, "N", "instants within the shutter (default 9 with --shutter)",
+               "a whole number from 1 to 1024", small_count);
     add_number(app, "--dispersion", o.dispersion, "X", "colour fringes: 0 off (default), 1 true air", "0 or more",
                not_negative);
     app.add_option("--codec", o.codec, "of a movie (default: the input's, else h264)")->type_name("NAME");
     add_number(app, "--quality", o.quality, "CRF", "of a movie, lower is better", "0 or more", not_negative);
-    for (const char* name : {"--filter", "--edge", "--shutter", "--samples", "--dispersion", "--codec", "--quality"})
-        app.get_option(name)->group("Picture");
     add_run(app, o.run);
 }
 
 void add_map(CLI::App& app, MapOptions& o) {
+    begin_group(app, "Files");
     app.add_option("-o,--output", o.output, "displacement map (EXR, channels u and v in pixels)")
         ->required()
-        ->type_name("OUTPUT")
-        ->group("Files");
+        ->type_name("OUTPUT");
     add_scene(app, o.scene);
     add_depth(app, o.depth, false);
     add_strength(app, o.strength);
@@ -263,12 +240,13 @@ void add_map(CLI::App& app, MapOptions& o) {
 }
 
 void add_field(CLI::App& app, FieldOptions& o) {
+    begin_group(app, "Files");
     app.add_option("-o,--output", o.output, "one file a z-slice (EXR, channels n, F.x, F.y, F.z); #### is the slice")
         ->required()
-        ->type_name("OUTPUT")
-        ->group("Files");
+        ->type_name("OUTPUT");
     add_scene(app, o.scene);
     app.remove_option(app.get_option("--fov"));
+    begin_group(app, "Field");
     add_number(app, "--frame", o.frame, "F", "frame whose field is written (default: the scene's first)", "a number",
                [](double) { return true; });
     app.add_option_function<std::string>(
@@ -281,7 +259,6 @@ void add_field(CLI::App& app, FieldOptions& o) {
            "which medium of the scene, from 0 (default)")
         ->type_name("N");
     add_run(app, o.run);
-    for (const char* name : {"--frame", "--medium"}) app.get_option(name)->group("Field");
     for (const char* name : {"--frames", "--skip-bad-frames", "--report"}) app.remove_option(app.get_option(name));
 }
 
@@ -331,6 +308,13 @@ void check(DepthArguments& o) {
 
 }  // namespace
 
+std::optional<double> parse_number(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+    return value;
+}
+
 Command parse_options(int argc, const char* const* argv) {
     CLI::App app{kAbout};
     app.name("eikonal");
@@ -366,7 +350,8 @@ Command parse_options(int argc, const char* const* argv) {
     }
     if (app.got_subcommand("warp")) {
         check(warp.depth);
-        if (warp.shutter > 0 && warp_command->count("--samples") == 0) warp.samples = 9;  // odd: the middle one is the frame's own
+        if (warp.shutter > 0 && warp_command->count("--samples") == 0)
+            warp.samples = 9;  // odd: the middle one is the frame's own
         if (warp.shutter == 0 && warp.samples > 1)
             throw UserError("--samples: has no meaning without --shutter; give --shutter 0.5");
         return warp;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -99,6 +100,9 @@ struct Information {
 };
 
 using Command = std::variant<WarpOptions, MapOptions, FieldOptions, PresetsOptions, Information>;
+
+/// The finite number that is all of `text`.
+std::optional<double> parse_number(std::string_view text);
 
 /// Throws UserError: unknown options (with the nearest valid one), ill-formed values, contradictions.
 Command parse_options(int argc, const char* const* argv);

@@ -101,6 +101,14 @@ bool Outputs::finished(int frame) const {
     });
 }
 
+std::size_t Outputs::keep_finished(std::vector<int>& frames) const {
+    const std::size_t kept = std::erase_if(frames, [&](int frame) { return finished(frame); });
+    if (kept > 0)
+        fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept,
+                   kept == 1 ? " is" : "s are");
+    return kept;
+}
+
 const NamedFiles* Outputs::find(const std::string& option) const {
     for (const Output& output : outputs_)
         if (output.option == option) return &output;

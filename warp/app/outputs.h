@@ -36,6 +36,8 @@ class Outputs {
 
     /// Whether all of a frame's files are there (they appear only when whole).
     bool finished(int frame) const;
+    /// Takes the finished frames from `frames`, tells on stderr that they are kept, and returns how many they are.
+    std::size_t keep_finished(std::vector<int>& frames) const;
     /// The files of an option, or null.
     const NamedFiles* find(const std::string& option) const;
 

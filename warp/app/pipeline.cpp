@@ -1,7 +1,6 @@
 #include "warp/app/pipeline.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
@@ -11,9 +10,11 @@
 #include <chrono>
 
 #include "noise/error.h"
-#include "warp/app/interrupt.h"
+#include "noise/memory.h"
 #include "warp/app/progress.h"
 #include "warp/displace/displacer.h"
+#include "warp/image/interrupt.h"
+#include "warp/image/picture.h"
 
 namespace eikonal {
 namespace {
@@ -41,8 +42,10 @@ bool RunResult::failed() const {
            std::any_of(records.begin(), records.end(), [](const FrameRecord& r) { return !r.error.empty(); });
 }
 
-int thread_count(const RunOptions& options) {
-    return options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+ThreadLimit::ThreadLimit(const RunOptions& options)
+    : threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()),
+      control_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)) {
+    set_image_threads(threads_);
 }
 
 RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads,

@@ -6,6 +6,8 @@
 /// begun. An interrupt ends the run after the frames under way. Nothing already finished is lost either way.
 #pragma once
 
+#include <tbb/global_control.h>
+
 #include <functional>
 #include <memory>
 #include <optional>
@@ -56,7 +58,15 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
 /// Tells on stderr how a run ended that did not make all frames. `rest`: what becomes of them.
 void print_outcome(const RunResult& result, const RunOptions& options, std::size_t total, const std::string& rest);
 
-/// Number of threads that a run uses: --threads or all processors.
-int thread_count(const RunOptions& options);
+/// While it lives, oneTBB and the image library use as many threads as the options say: --threads or all processors.
+class ThreadLimit {
+  public:
+    explicit ThreadLimit(const RunOptions& options);
+    int threads() const { return threads_; }
+
+  private:
+    int threads_;
+    tbb::global_control control_;
+};
 
 }  // namespace eikonal

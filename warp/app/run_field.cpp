@@ -1,7 +1,6 @@
 /// `eikonal field`: slices of the refractive field of one medium, for analysis. And the two commands that only print.
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,13 +8,15 @@
 #include "noise/error.h"
 #include "noise/gradient_noise.h"
 #include "noise/lattice_snapshot.h"
+#include "noise/memory.h"
 #include "noise/screens.h"
 #include "warp/app/commands.h"
-#include "warp/app/interrupt.h"
 #include "warp/app/outputs.h"
 #include "warp/app/pipeline.h"
 #include "warp/app/progress.h"
 #include "warp/app/shot.h"
+#include "warp/image/interrupt.h"
+#include "warp/scene/screen_view.h"
 
 namespace eikonal {
 namespace {
@@ -23,7 +24,6 @@ namespace {
 constexpr int kChannels = 4;
 /// Slices of gradient noise, which has no lattice of its own, unless the scene states `lattice`.
 constexpr int kNoiseSamples = 64;
-constexpr double kDefaultFps = 24;
 
 /// The z-slices of a field: how many, of what size, and what one holds.
 struct Slices {
@@ -92,19 +92,14 @@ Slices noise_slices(const TurbulenceSpec& spec, double t, double exaggeration, d
     return slices;
 }
 
-/// A screen is one slice: n and F averaged over its slab, in the lateral axes of the camera (F.z = 0), at the strength that
-/// it has before any falloff: where a falloff lies on a screen depends on the ray that meets it.
+/// A screen is one slice: n and F averaged over its slab, in the lateral axes of the camera (F.z = 0), at the strength
+/// that it has before any falloff: where a falloff lies on a screen depends on the ray that meets it.
 Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, double exaggeration,
                      double force_factor) {
-    const std::array<int, 2> resolution = scene.camera.resolution.value_or(std::array{1920, 1080});
+    const std::array<int, 2> resolution = scene.camera.resolution.value_or(kDefaultResolution);
     const Camera camera = CameraPath(scene.camera, resolution[0], resolution[1]).reference();
-    const ScreenView view{camera.projection == Projection::Perspective,
-                          DepthInput({}, scene.plate).far(),
-                          0.5 * resolution[0] / camera.f_px,
-                          0.5 * resolution[1] / camera.f_px,
-                          1 / camera.f_px,
-                          scene.optics.aperture,
-                          scene.time.fps.value_or(kDefaultFps)};
+    const ScreenView view = screen_view(camera, resolution[0], resolution[1], scene.optics.aperture,
+                                        DepthInput({}, scene.plate).far(), scene.time.fps.value_or(kDefaultFps));
     const std::vector<ScreenGeometry> geometry = layout_screens(spec, view);
     check_screens(spec, geometry, memory_limit());
     auto screens =
@@ -148,7 +143,7 @@ Slices make_slices(const FieldOptions& options, const Scene& scene) {
     const double t = (options.frame.value_or(scene.time.first_frame) - scene.time.first_frame) /
                      scene.time.fps.value_or(kDefaultFps);
     const double exaggeration = scene.optics.exaggeration;
-    const double force = exaggeration * (scene.optics.ray_equation == RayEquation::Paper ? 0.5 : 1.0);
+    const double force = force_strength(scene.optics);
     switch (spec->form) {
         case TurbulenceForm::Lattice:
             return lattice_slices(*spec, t, exaggeration, force);
@@ -160,16 +155,25 @@ Slices make_slices(const FieldOptions& options, const Scene& scene) {
     return screen_slices(*spec, t, scene, exaggeration, force);
 }
 
+/// UserError: a slice as it is computed, and its copy as it is written, are more than there is memory.
+void check_memory(const Slices& slices) {
+    const double bytes = 2.0 * sizeof(float) * kChannels * slices.width * slices.height;
+    const auto memory = static_cast<double>(memory_limit());
+    if (bytes > memory)
+        throw UserError(fmt::format(
+            "slices of {} x {} samples need {:.3g} GB of memory, {:.3g} GB are available; use a smaller lattice",
+            slices.width, slices.height, bytes * 1e-9, memory * 1e-9));
+}
+
 }  // namespace
 
 int run(const FieldOptions& options) {
-    const int threads = thread_count(options.run);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    set_image_threads(threads);
+    const ThreadLimit limit(options.run);
     const Scene scene = load_scene(options.scene);
     Outputs outputs;
     outputs.add("-o", options.output, OutputKind::Maps);
     const Slices slices = make_slices(options, scene);
+    check_memory(slices);
     std::vector<int> numbers(static_cast<std::size_t>(slices.count));
     for (int i = 0; i < slices.count; ++i) numbers[static_cast<std::size_t>(i)] = i;
     std::vector<NamedFiles> inputs;

@@ -1,7 +1,6 @@
 /// `eikonal map`: displacement maps without any footage.
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include "noise/error.h"
 #include "warp/app/commands.h"
@@ -13,25 +12,22 @@
 namespace eikonal {
 namespace {
 
-constexpr int kDefaultWidth = 1920, kDefaultHeight = 1080;
 /// Memory of a pixel on its way: map, depth, matte, and the map and the STMap as they are written.
 constexpr double kMapBytes = 8 + 8 + 12 + 2 * 12;
 
-/// Resolution: the scene's, else that of the depth map's first frame, else 1920 x 1080.
+/// Resolution: the scene's, else that of the depth map's first frame, else kDefaultResolution.
 PixelWindow choose_display(const Scene& scene, const DepthArguments& depth, int frame) {
     if (scene.camera.resolution) return {0, 0, (*scene.camera.resolution)[0], (*scene.camera.resolution)[1]};
     if (depth.depth)
         if (const FileChannel split = split_channel(*depth.depth); !split.file.empty())
             return display_window(read_picture_header(FilePattern::parse(split.file).at(frame)).parts.front());
-    return {0, 0, kDefaultWidth, kDefaultHeight};
+    return {0, 0, kDefaultResolution[0], kDefaultResolution[1]};
 }
 
 }  // namespace
 
 int run(const MapOptions& options) {
-    const int threads = thread_count(options.run);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    set_image_threads(threads);
+    const ThreadLimit limit(options.run);
 
     Scene scene = load_scene(options.scene);
     Outputs outputs;
@@ -46,16 +42,8 @@ int run(const MapOptions& options) {
     const PixelWindow display = choose_display(scene, options.depth, frames.front());
     const Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {});
     outputs.check(frames, shot.companions());
-    if (options.run.verbose)
-        for (const std::string& note : shot.notes()) fmt::print(stderr, "eikonal: {}\n", note);
-    for (const std::string& warning : shot.displacer().warnings())
-        fmt::print(stderr, "eikonal: warning: {}\n", warning);
-    const std::size_t asked = frames.size();
-    if (!options.run.overwrite) std::erase_if(frames, [&](int frame) { return outputs.finished(frame); });
-    const std::size_t kept = asked - frames.size();
-    if (kept > 0)
-        fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept,
-                   kept == 1 ? " is" : "s are");
+    shot.tell(options.run.verbose);
+    const std::size_t kept = options.run.overwrite ? 0 : outputs.keep_finished(frames);
     if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     if (!frames.empty()) shot.try_companions(frames.front(), nullptr, {}, display);
 
@@ -80,8 +68,7 @@ int run(const MapOptions& options) {
                         [](FrameItem&) {}};
     RunResult result;
     if (!frames.empty())
-        result =
-            run_pipeline(stages, options.run, frames.size(), threads, kMapBytes * static_cast<double>(display.area()));
+        result = run_pipeline(stages, options.run, frames.size(), limit.threads(), shot.frame_bytes(kMapBytes));
     if (options.run.report) write_report(*options.run.report, shot, result, kept);
     print_outcome(result, options.run, frames.size(), "the same command makes the rest");
     return result.failed() ? 1 : 0;

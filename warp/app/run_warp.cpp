@@ -1,7 +1,6 @@
 /// `eikonal warp`: footage in, shimmering footage out.
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 
@@ -223,23 +222,16 @@ RunResult warp_frames(const WarpOptions& options, const Footage& footage, const 
     const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); },
                         [&](FrameItem& item) { warp.work(item); }, [&](FrameItem& item) { warp.finish(item); },
                         footage_kind(options.output) == FootageKind::Movie};
-    const double bytes = static_cast<double>(footage.display.area()) *
-                         (kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
+    const double bytes = shot.frame_bytes(kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
     RunResult result = run_pipeline(stages, options.run, frames.size(), threads, bytes);
     if (!result.interrupted && (options.run.skip_bad_frames || !result.failed())) warp.close();
     return result;
 }
 
-void print_lines(const std::vector<std::string>& lines, const char* prefix) {
-    for (const std::string& line : lines) fmt::print(stderr, "eikonal: {}{}\n", prefix, line);
-}
-
 }  // namespace
 
 int run(const WarpOptions& options) {
-    const int threads = thread_count(options.run);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    set_image_threads(threads);
+    const ThreadLimit limit(options.run);
 
     Scene scene = load_scene(options.scene);
     Outputs outputs;
@@ -250,7 +242,7 @@ int run(const WarpOptions& options) {
     const bool to_movie = outputs.find("-o")->single;
     const std::vector<int> wanted = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{};
     const Footage footage = find_footage(options.input, wanted);
-    print_lines(footage.notes, "warning: ");
+    for (const std::string& note : footage.notes) fmt::print(stderr, "eikonal: warning: {}\n", note);
     bool hole = false;
     std::vector<int> frames = choose_frames(options, footage, wanted, scene.time.first_frame, hole);
     const Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display,
@@ -258,12 +250,10 @@ int run(const WarpOptions& options) {
     std::vector<NamedFiles> inputs = shot.companions();
     inputs.push_back({"the input", footage.files, footage.kind == FootageKind::Movie});
     outputs.check(frames, inputs);
-    if (options.run.verbose) print_lines(shot.notes(), "");
-    print_lines(shot.displacer().warnings(), "warning: ");
+    shot.tell(options.run.verbose);
 
     std::size_t kept = 0;
     if (!options.run.overwrite) {
-        const std::size_t before = frames.size();
         if (to_movie) {
             std::error_code ignored;
             if (std::filesystem::exists(options.output, ignored)) {
@@ -272,16 +262,12 @@ int run(const WarpOptions& options) {
                 return hole ? 1 : 0;
             }
         } else {
-            std::erase_if(frames, [&](int frame) { return outputs.finished(frame); });
+            kept = outputs.keep_finished(frames);
         }
-        kept = before - frames.size();
-        if (kept > 0)
-            fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept,
-                       kept == 1 ? " is" : "s are");
     }
     if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     RunResult result;
-    if (kept == 0 || !frames.empty()) result = warp_frames(options, footage, shot, outputs, frames, threads);
+    if (kept == 0 || !frames.empty()) result = warp_frames(options, footage, shot, outputs, frames, limit.threads());
     if (options.run.report) write_report(*options.run.report, shot, result, kept);
     print_outcome(result, options.run, frames.size(),
                   to_movie ? "the movie was not written" : "the same command makes the rest");

@@ -21,7 +21,7 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
       depth_(depth, scene_.plate),
       meeting_(depth.meeting),
       display_(display),
-      fps_(scene_.time.fps.value_or(fps.value_or(24))) {
+      fps_(scene_.time.fps.value_or(fps.value_or(kDefaultFps))) {
     DisplacerSettings settings;
     settings.width = display.width;
     settings.height = display.height;
@@ -30,17 +30,18 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
     settings.fov = scene_options.fov;
     settings.far = depth_.far();
     settings.model = strength.model;
+    // --rms makes the weakest visible
+    settings.negligible = strength.rms || strength.gain == 0 ? 0 : kNegligibleShift / std::abs(strength.gain);
     displacer_ = std::make_unique<Displacer>(scene_, settings);
-    const double natural = displacer_->expected_rms(depth_.far());
     gain_ = strength.gain;
     if (strength.rms) {
+        const double natural = displacer_->expected_rms(depth_.far());
         if (natural == 0 && *strength.rms > 0)
             throw UserError(fmt::format(
                 "--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength (cn2)",
                 *strength.rms));
         gain_ = natural > 0 ? gain_ * *strength.rms / natural : 0;
     }
-    expected_rms_ = natural * gain_;
     if (strength.mask) {
         const FileChannel split = split_channel(*strength.mask);
         if (split.file.empty())
@@ -50,13 +51,23 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
     }
 }
 
+double Shot::frame_bytes(double pixel_bytes) const {
+    return static_cast<double>(display_.area()) * pixel_bytes + static_cast<double>(displacer_->instant_bytes());
+}
+
+void Shot::tell(bool verbose) const {
+    if (verbose)
+        for (const std::string& note : notes()) fmt::print(stderr, "eikonal: {}\n", note);
+    for (const std::string& warning : displacer_->warnings()) fmt::print(stderr, "eikonal: warning: {}\n", warning);
+}
+
 std::vector<std::string> Shot::notes() const {
     std::vector<std::string> lines;
     lines.push_back(fmt::format("scene: {}", scene_.file.empty() ? "none" : scene_.file.filename().string()));
     lines.push_back("depth: " + depth_.description());
     for (const std::string& note : displacer_->notes()) lines.push_back(note);
-    lines.push_back(
-        fmt::format("displacement: {:.3g} px rms expected at {:g} m, gain {:.4g}", expected_rms_, depth_.far(), gain_));
+    lines.push_back(fmt::format("displacement: {:.3g} px rms expected at {:g} m, gain {:.4g}", expected_rms(),
+                                depth_.far(), gain_));
     if (const double focusing = displacer_->focusing_variance(depth_.far()); focusing > 0)
         lines.push_back(
             fmt::format("focusing variance at {:g} m: {:.3g} (rays begin to fold near 1)", depth_.far(), focusing));
@@ -118,7 +129,7 @@ std::vector<DisplacementMap> Shot::maps(int frame, const std::vector<double>& of
     for (const double offset : offsets) {
         DisplacementMap map{window, std::vector<float>(2 * window.area())};
         if (gain_ != 0)
-            displacer_->at(frame + offset, nearest, farthest).map(window, source, meeting_, gain_, map.uv.data());
+            displacer_->at(frame + offset, nearest, farthest, gain_).map(window, source, meeting_, map.uv.data());
         for (std::size_t i = 0; i < mask.size(); ++i) {
             map.uv[2 * i] *= mask[i];
             map.uv[2 * i + 1] *= mask[i];

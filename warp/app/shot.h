@@ -28,10 +28,14 @@ class Shot {
     const Displacer& displacer() const { return *displacer_; }
     double gain() const { return gain_; }
     double fps() const { return fps_; }
-    /// Expected rms of |d| at far(), gain included [px].
-    double expected_rms() const { return expected_rms_; }
-    /// Lines for --verbose: scene, depth, media, strength.
+    /// Memory that a frame takes on its way, about [bytes]. pixel_bytes: of the caller's own, a pixel of the display.
+    double frame_bytes(double pixel_bytes) const;
+    /// Expected rms of |d| at far(), gain included [px]. Worked out at each call.
+    double expected_rms() const { return displacer_->expected_rms(depth_.far()) * gain_; }
+    /// Lines on scene, depth, media and strength.
     std::vector<std::string> notes() const;
+    /// Tells on stderr what the user should know; `verbose`: the notes too.
+    void tell(bool verbose) const;
 
     /// Maps of the instants at frame + offsets, on `window`, masked. `input`: the frame's picture or null.
     std::vector<DisplacementMap> maps(int frame, const std::vector<double>& offsets, const Picture* input,
@@ -52,7 +56,7 @@ class Shot {
     PixelWindow display_;
     double fps_;
     std::unique_ptr<Displacer> displacer_;
-    double gain_ = 1, expected_rms_ = 0;
+    double gain_ = 1;
     std::optional<FilePattern> mask_;
     std::string mask_channel_;
 };

@@ -1,12 +1,10 @@
 #include "warp/app/warp_plate.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <stdexcept>
 
 #include "noise/refractivity.h"
+#include "warp/image/rows.h"
 
 namespace eikonal {
 namespace {
@@ -23,23 +21,17 @@ MapView view_of(const DisplacementMap& map, const PixelWindow& window) {
     return {first, window, stride};
 }
 
-template <class Row>
-void for_rows(const PixelWindow& window, Row&& row) {
-    tbb::parallel_for(tbb::blocked_range<int>(0, window.height, 16), [&](const tbb::blocked_range<int>& range) {
-        for (int y = range.begin(); y < range.end(); ++y) row(y);
-    });
-}
-
 /// One flag a pixel: whether any of the maps moves it.
 std::vector<std::uint8_t> moved_pixels(const std::vector<DisplacementMap>& maps, const PixelWindow& window) {
     std::vector<std::uint8_t> moved(window.area(), 0);
-    for_rows(window, [&](int y) {
+    for_rows(window.height, [&](int y) {
         std::uint8_t* out = moved.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width);
         for (const DisplacementMap& map : maps) {
             const MapView view = view_of(map, window);
             const float* d = view.data + y * view.stride;
             for (int x = 0; x < window.width; ++x)
-                out[x] = static_cast<std::uint8_t>(out[x] | static_cast<int>(d[2 * x] != 0) | static_cast<int>(d[2 * x + 1] != 0));
+                out[x] = static_cast<std::uint8_t>(out[x] | static_cast<int>(d[2 * x] != 0) |
+                                                   static_cast<int>(d[2 * x + 1] != 0));
         }
     });
     return moved;
@@ -57,7 +49,8 @@ Workspace& workspace() {
 }
 
 /// Resamples space.in into space.out.
-void resample_all(Workspace& space, const std::vector<DisplacementMap>& maps, const WarpSettings& settings, bool colour) {
+void resample_all(Workspace& space, const std::vector<DisplacementMap>& maps, const WarpSettings& settings,
+                  bool colour) {
     const LinearImage& in = space.in;
     LinearImage& out = space.out;
     ResampleOptions options{settings.filter, settings.edge, {1, 1, 1, 1}};
@@ -78,13 +71,13 @@ void resample_all(Workspace& space, const std::vector<DisplacementMap>& maps, co
     instant.resize(in.pixels.size());
     for (std::size_t m = 1; m < maps.size(); ++m) {
         resample(source, view_of(maps[m], in.data), {instant.data(), in.data, 4, stride}, options);
-        for_rows(in.data, [&](int y) {
+        for_rows(in.data.height, [&](int y) {
             const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(stride);
             for (std::size_t i = first; i < first + static_cast<std::size_t>(stride); ++i) out.pixels[i] += instant[i];
         });
     }
     const float share = 1.0f / static_cast<float>(maps.size());
-    for_rows(in.data, [&](int y) {
+    for_rows(in.data.height, [&](int y) {
         const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(stride);
         for (std::size_t i = first; i < first + static_cast<std::size_t>(stride); ++i) out.pixels[i] *= share;
     });
@@ -94,9 +87,10 @@ void move_data(Part& part, const Part& source, const DataMover& mover, const Dis
     const PixelWindow window = data_window(part);
     const MapView view = view_of(map, window);
     const auto index = [&](int x, int y) {
-        return static_cast<std::size_t>(y - window.y0) * static_cast<std::size_t>(window.width) + static_cast<std::size_t>(x - window.x0);
+        return static_cast<std::size_t>(y - window.y0) * static_cast<std::size_t>(window.width) +
+               static_cast<std::size_t>(x - window.x0);
     };
-    for_rows(window, [&](int row) {
+    for_rows(window.height, [&](int row) {
         const float* d = view.data + row * view.stride;
         for (int c = 0; c < window.width; ++c) {
             if (d[2 * c] == 0 && d[2 * c + 1] == 0) continue;

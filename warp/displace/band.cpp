@@ -13,10 +13,6 @@ constexpr int kBefore = 2, kTaps = 6;  // nodes i-2 … i+3 around position i + 
 
 using Weights = std::array<float, kTaps>;
 
-int floor_div(int a, int b) {
-    return a >= 0 ? a / b : -((-a + b - 1) / b);
-}
-
 /// Six-point Lagrange weights at fraction f in [0, 1) between nodes 2 and 3.
 Weights lagrange(double f) {
     Weights w{};

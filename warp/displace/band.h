@@ -15,12 +15,22 @@
 /// for every z > 0 that a float can hold, as long as the nodes are.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <limits>
+#include <span>
 #include <vector>
 
+#include "warp/displace/mirage.h"
+#include "warp/displace/shift.h"
 #include "warp/image/linear_image.h"
 
 namespace eikonal {
+
+/// a / b rounded down, b > 0: the cell of size b in which pixel a lies.
+constexpr int floor_div(int a, int b) {
+    return a >= 0 ? a / b : -((-a + b - 1) / b);
+}
 
 enum class DepthInterpolation { Linear, Hermite };
 
@@ -36,11 +46,6 @@ int node_spacing(double cell_px);
 
 /// X.x, X.y, S.x, S.y of one node at one depth; a SIMD register.
 using Node = float __attribute__((vector_size(16)));
-
-/// Displacement vector in pixels.
-struct Shift {
-    float x = 0, y = 0;
-};
 
 /// Nodes for a band of rows. Layout [grid row][depth][grid column].
 struct Band {
@@ -99,28 +104,47 @@ class BandRow {
     std::vector<int> cached_x_;
 };
 
-/// The rows of several bands (one a medium, each with depths of its own) whose displacements add up.
+/// The rows of several bands (one a medium, each with depths of its own) and mirages whose displacements add up.
 class BandRows {
   public:
-    void start(const std::vector<Band>& bands, int y) {
+    /// y: absolute pixel row that the bands cover. bands and mirages must outlive this. gain multiplies the mirages'
+    /// displacement; the bands' nodes have theirs.
+    void start(const std::vector<Band>& bands, int y, std::span<const Mirage> mirages = {}, double gain = 1) {
         rows_.resize(bands.size());
         for (std::size_t i = 0; i < bands.size(); ++i) rows_[i].start(bands[i], y);
+        mirages_.resize(mirages.size());
+        for (std::size_t i = 0; i < mirages.size(); ++i) mirages_[i].start(mirages[i], y, gain);
     }
     Shift at(int x, double z) {
         Shift sum;
-        for (BandRow& row : rows_) {
-            const Shift d = row.at(x, z);
+        const auto add = [&sum](Shift d) {
             sum.x += d.x;
             sum.y += d.y;
-        }
+        };
+        for (BandRow& row : rows_) add(row.at(x, z));
+        for (MirageRow& row : mirages_) add(row.at(x, z));
         return sum;
     }
     void add_constant_depth(int x0, int n, double z, float* uv) {
         for (BandRow& row : rows_) row.add_constant_depth(x0, n, z, uv);
+        for (MirageRow& row : mirages_) row.add_constant_depth(x0, n, z, uv);
+    }
+
+    /// Whether a mirage moves pixel x; and the axial depth where its ray ends on a surface [m], infinite if on none.
+    bool mirage_moves(int x) {
+        bool moves = false;
+        for (MirageRow& row : mirages_) moves = row.moves(x) || moves;
+        return moves;
+    }
+    double end(int x) {
+        double end = std::numeric_limits<double>::infinity();
+        for (MirageRow& row : mirages_) end = std::min(end, row.end(x));
+        return end;
     }
 
   private:
     std::vector<BandRow> rows_;
+    std::vector<MirageRow> mirages_;
 };
 
 }  // namespace eikonal

@@ -6,36 +6,21 @@
 /// Instant::map fills a window of pixels. Frame F depends on the scene, its settings and F alone: not on other frames,
 /// threads, or the window asked for.
 ///
-/// Every medium is handled by the model that suits its form, and their displacements add:
-///     form             models (first: the default)
-///     screens          screens
-///     lattice          spectral (orthographic view along a lattice axis), else first-order; also table, tables
-///     gradient-noise   first-order
+/// Every medium is handled by the model that suits it (layers.h), and their displacements add. Gain multiplies them,
+/// but for mirages: those are geometry, and [optics] exaggeration makes more of them.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "warp/displace/meet.h"
+#include "warp/displace/model.h"
 #include "warp/scene/camera.h"
 #include "warp/scene/scene.h"
 
 namespace eikonal {
-
-enum class Model { Table, Tables, Spectral, Screens, FirstOrder };
-
-/// What the scene leaves to the footage and the command line.
-struct DisplacerSettings {
-    int width = 0, height = 0;  ///< of the display window
-    double pixel_aspect = 1;
-    double fps = 24;             ///< frame F is at t = (F - first_frame)/fps
-    std::optional<double> fov;   ///< overrides the scene's camera
-    double far = 1000;           ///< greatest axial distance [m] > 0: what lies beyond is displaced as at `far`
-    std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
-};
 
 /// Where each pixel's object is: one axial distance for all [m], or a plane of them.
 using DepthSource = std::variant<double, const DepthPlane*>;
@@ -50,10 +35,9 @@ class Displacer {
     /// One frame's media, ready to be mapped. Thread-safe; must not outlive the Displacer.
     class Instant {
       public:
-        /// Displacement of every pixel of `window`, times gain, into `uv`: window.area() interleaved pairs.
-        /// Rows in parallel. Finite for every finite depth > 0.
-        void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, double gain,
-                 float* uv) const;
+        /// Displacement of every pixel of `window` into `uv`: window.area() interleaved pairs. Tiles in parallel.
+        /// Finite for every finite depth > 0.
+        void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, float* uv) const;
 
         const Camera& camera() const;
         Instant(Instant&&) noexcept;
@@ -68,14 +52,16 @@ class Displacer {
 
     /// frame: any real number (shutter samples lie between frames). `nearest`, `farthest`: axial depths that map() will
     /// be asked for.
-    Instant at(double frame, double nearest, double farthest) const;
+    Instant at(double frame, double nearest, double farthest, double gain = 1) const;
+    /// Bytes of one instant, about, and at most needed for a while.
+    std::uint64_t instant_bytes() const;
 
     /// Expected root mean square of |d| in pixels, over pixels and time, for an object at axial distance D at the
-    /// strength that the media have before any falloff. Gradient noise: estimated from kRmsRays rays.
+    /// strength that the media have before any falloff. Gradient noise and blobs: estimated from kRmsRays rays.
     double expected_rms(double D) const;
 
-    /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line) by the thin screens, at the strength
-    /// that they have before any falloff: near 1 rays fold. Lattices and gradient noise are not counted.
+    /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line) by the thin screens, at the
+    /// strength that they have before any falloff: near 1 rays fold. Lattices and gradient noise are not counted.
     double focusing_variance(double D) const;
 
     /// For --verbose: one line a medium: its model and why, its sizes; and what is left out.
@@ -91,10 +77,5 @@ class Displacer {
     struct Shot;
     std::unique_ptr<Shot> shot_;
 };
-
-inline constexpr int kRmsRays = 256;
-
-/// Half the memory of the machine, or of the container [bytes]: what one field, or the frames under way, may take.
-std::uint64_t memory_limit();
 
 }  // namespace eikonal

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace eikonal {
 namespace {
@@ -9,7 +11,7 @@ namespace {
 using Range = DepthPlane::Range;
 
 int floor_block(int a) {
-    return a >= 0 ? a / DepthPlane::kBlock : -((-a + DepthPlane::kBlock - 1) / DepthPlane::kBlock);
+    return floor_div(a, DepthPlane::kBlock);
 }
 
 /// Whole pixels, far within an int for any displacement.
@@ -28,20 +30,61 @@ struct Ray {
     /// The depth buffer where a displacement points to.
     float buffer(Shift d) const { return depth.at(x + whole(d.x + 0.5f), y + whole(d.y + 0.5f)); }
 
-    /// Whether the picture's samples around pixel + d mix the facet there, at depth `facet`, with one much nearer.
-    bool at_edge(Shift d, float facet) const {
+    /// Whether the picture's samples around pixel + d mix the facet there, at depth `facet`, with one much nearer,
+    /// other than those that `ignored` says.
+    template <class Ignored>
+    bool at_edge(Shift d, float facet, const Ignored& ignored) const {
         const float limit = kEdgeRatio * facet;
         if (limit <= depth.nearest()) return false;
-        const int xi = whole(d.x), yi = whole(d.y);
-        const int nx = d.x != static_cast<float>(xi) ? 1 : 0, ny = d.y != static_cast<float>(yi) ? 1 : 0;
-        for (int j = 0; j <= ny; ++j)
-            for (int i = 0; i <= nx; ++i)
-                if (depth.at(x + xi + i, y + yi + j) < limit) return true;
+        const int xi = x + whole(d.x), yi = y + whole(d.y);
+        const int nx = d.x != std::floor(d.x) ? 1 : 0, ny = d.y != std::floor(d.y) ? 1 : 0;
+        for (int j = yi; j <= yi + ny; ++j)
+            for (int i = xi; i <= xi + nx; ++i)
+                if (const float there = depth.at(i, j); there < limit && !ignored(i, j, there)) return true;
         return false;
+    }
+    bool at_edge(Shift d, float facet) const {
+        return at_edge(d, facet, [](int, int, float) { return false; });
     }
     bool blocked(Shift d, double z) const {
         const float facet = buffer(d);
         return facet <= static_cast<float>(z) || at_edge(d, facet);
+    }
+};
+
+/// A ray that a mirage moves: ground stands in its way nowhere but where it ends.
+struct SkimmingRay : Ray {
+    const MirageGround& ground;
+    double last;  ///< axial depth where it ends, on the ground or at the farthest object
+
+    struct Facet {
+        float seen;   ///< in the depth buffer
+        double stop;  ///< of the ray
+    };
+    Facet under(Shift d) const {
+        const int i = x + whole(d.x + 0.5f), j = y + whole(d.y + 0.5f);
+        const float seen = depth.at(i, j);
+        return {seen, ground.is(i, j, seen) ? last : std::min<double>(seen, last)};
+    }
+    bool blocked(Shift d, double z) const { return under(d).stop <= z; }
+    /// d, or where the picture's samples there mix in something much nearer, the centre of the facet.
+    Shift settled(Shift d) const {
+        const float seen = under(d).seen;
+        if (!at_edge(d, seen, [this](int i, int j, float z) { return ground.is(i, j, z); })) return d;
+        return {static_cast<float>(whole(d.x + 0.5f)), static_cast<float>(whole(d.y + 0.5f))};
+    }
+    /// Whether no object up to depth z is about the way from pixel + a to pixel + b. Looks at single pixels where these
+    /// are few.
+    bool clear(Shift a, Shift b, double z) const {
+        constexpr int kFew = 64;
+        const int x0 = x + whole(std::min(a.x, b.x)) - 1, y0 = y + whole(std::min(a.y, b.y)) - 1;
+        const int x1 = x + whole(std::max(a.x, b.x)) + 2, y1 = y + whole(std::max(a.y, b.y)) + 2;
+        if (ground.clear(x0, y0, x1, y1, z)) return true;
+        if (static_cast<std::int64_t>(x1 - x0 + 1) * (y1 - y0 + 1) > kFew) return false;
+        for (int j = y0; j <= y1; ++j)
+            for (int i = x0; i <= x1; ++i)
+                if (const float there = depth.at(i, j); there <= z && !ground.is(i, j, there)) return false;
+        return true;
     }
 };
 
@@ -55,7 +98,8 @@ float motion(Shift a, Shift b) {
 }
 
 /// The last clear point between clear (z, d) and blocked (behind, e).
-Shift bisect(const Ray& ray, double z, Shift d, double behind, Shift e) {
+template <class AnyRay>
+Shift bisect(const AnyRay& ray, double z, Shift d, double behind, Shift e) {
     for (int i = 0; i < 32 && motion(d, e) > kMarchError; ++i) {
         const double middle = 0.5 * (z + behind);
         const Shift m = ray.at(middle);
@@ -94,6 +138,48 @@ Shift march(const Ray& ray, const Range& range) {
         }
         z = next;
         d = e;
+    }
+    return d;
+}
+
+/// The march of a ray that skims the ground: leaps that no object is about, at most kMarchStep where one is. Edges
+/// matter where the ray ends only: on its way up from the ground it may pass close by.
+Shift skim(const SkimmingRay& ray, double nearest) {
+    constexpr double kLeastLeap = 1e-9, kLongerLeap = 4;
+    double z = std::min(nearest, ray.last);
+    Shift d = ray.at(z);
+    double leap = 1;  // of the way to where the ray would stop, in inverse depth
+    for (int step = 0; step < kMostMarchSteps; ++step) {
+        const double stop = ray.under(d).stop;
+        if (stop <= z) break;
+        const Shift upon = ray.at(stop);
+        if (same_pixel(upon, d)) return ray.settled(upon);
+        leap = std::min(1.0, kLongerLeap * leap);
+        const auto reached = [&] { return leap < 1 ? 1 / (1 / z + (1 / stop - 1 / z) * leap) : stop; };
+        double next = reached();
+        Shift e = leap < 1 ? ray.at(next) : upon;
+        while (motion(e, d) > kMarchStep && leap > kLeastLeap && !ray.clear(d, e, next)) {
+            leap *= 0.5;
+            next = reached();
+            e = ray.at(next);
+        }
+        if (const double there = ray.under(e).stop; there <= next)
+            return ray.settled(there == next ? e : bisect(ray, z, d, next, e));
+        z = next;
+        d = e;
+    }
+    return ray.settled(d);
+}
+
+/// kFixedPointSteps or fewer times D <- what is under s(D).
+Shift fixed_point(const SkimmingRay& ray, int steps) {
+    double z = ray.under({}).stop;
+    Shift d = ray.at(z);
+    for (int i = 0; i < steps; ++i) {
+        const double next = ray.under(d).stop;
+        if (next == z) break;
+        z = next;
+        d = ray.at(z);
     }
     return d;
 }
@@ -165,12 +251,61 @@ std::vector<Range> DepthPlane::around(const PixelWindow& tile, int reach) const 
     return result;
 }
 
-MeetTile::MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeeting how, int reach)
+MirageGround::MirageGround(const DepthPlane& depth, const PixelWindow& tile, int reach, std::span<const Mirage> mirages)
+    : mirages_(mirages), window_(depth.window()) {
+    constexpr int kBlock = DepthPlane::kBlock;
+    const int x0 = std::max(tile.x0 - reach, window_.x0), y0 = std::max(tile.y0 - reach, window_.y0);
+    const int x1 = std::min(tile.x0 + tile.width + reach, window_.x0 + window_.width) - 1;
+    const int y1 = std::min(tile.y0 + tile.height + reach, window_.y0 + window_.height) - 1;
+    column0_ = floor_block(x0 - window_.x0);
+    row0_ = floor_block(y0 - window_.y0);
+    columns_ = floor_block(x1 - window_.x0) - column0_ + 1;
+    rows_ = floor_block(y1 - window_.y0) - row0_ + 1;
+    nearest_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
+                    std::numeric_limits<float>::max());
+    const int bottom = std::min(window_.y0 + window_.height, window_.y0 + (row0_ + rows_) * kBlock);
+    const int right = std::min(window_.x0 + window_.width, window_.x0 + (column0_ + columns_) * kBlock);
+    for (int y = window_.y0 + row0_ * kBlock; y < bottom; ++y) {
+        float* row = nearest_.data() + static_cast<std::ptrdiff_t>((y - window_.y0) / kBlock - row0_) * columns_;
+        for (int x = window_.x0 + column0_ * kBlock; x < right; ++x) {
+            float& nearest = row[(x - window_.x0) / kBlock - column0_];
+            if (const float z = depth.at(x, y); z < nearest && !is(x, y, z)) nearest = z;
+        }
+    }
+}
+
+bool MirageGround::clear(int x0, int y0, int x1, int y1, double z) const {
+    const auto column = [this](int x) { return std::clamp(floor_block(x - window_.x0) - column0_, 0, columns_ - 1); };
+    const auto row = [this](int y) { return std::clamp(floor_block(y - window_.y0) - row0_, 0, rows_ - 1); };
+    for (int j = row(y0); j <= row(y1); ++j)
+        for (int i = column(x0); i <= column(x1); ++i)
+            if (nearest_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) +
+                         static_cast<std::size_t>(i)] <= z)
+                return false;
+    return true;
+}
+
+MeetTile::MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeeting how, int reach,
+                   std::span<const Mirage> mirages)
     : depth_(depth), tile_(tile), how_(how) {
+    if (!mirages.empty()) ground_ = MirageGround(depth, tile, how == DepthMeeting::March ? reach : 0, mirages);
     if (how != DepthMeeting::March) return;
     ranges_ = depth.around(tile, reach);
     range_columns_ =
         floor_block(tile.x0 + tile.width - 1 - depth.window().x0) - floor_block(tile.x0 - depth.window().x0) + 1;
+}
+
+Shift MeetTile::over_ground(BandRows& bands, int x, int y, const DepthPlane::Range& range) const {
+    const SkimmingRay ray{{bands, depth_, x, y}, ground_, std::min<double>(bands.end(x), range.farthest)};
+    switch (how_) {
+        case DepthMeeting::March:
+            return skim(ray, range.nearest);
+        case DepthMeeting::FixedPoint:
+            return fixed_point(ray, kFixedPointSteps);
+        case DepthMeeting::Own:
+            return fixed_point(ray, 0);
+    }
+    return {};
 }
 
 void MeetTile::row(BandRows& bands, int y, float* uv) const {
@@ -180,18 +315,25 @@ void MeetTile::row(BandRows& bands, int y, float* uv) const {
         static_cast<std::size_t>((floor_block(y - window.y0) - floor_block(tile_.y0 - window.y0)) * range_columns_);
     for (int i = 0; i < tile_.width; ++i) {
         const Ray ray{bands, depth_, tile_.x0 + i, y};
+        const Range range =
+            how_ == DepthMeeting::March
+                ? ranges_[first + static_cast<std::size_t>(floor_block(ray.x - window.x0) - first_column)]
+                : Range{depth_.nearest(), depth_.farthest()};
         Shift d;
-        switch (how_) {
-            case DepthMeeting::March:
-                d = march(ray,
-                          ranges_[first + static_cast<std::size_t>(floor_block(ray.x - window.x0) - first_column)]);
-                break;
-            case DepthMeeting::FixedPoint:
-                d = fixed_point(ray);
-                break;
-            case DepthMeeting::Own:
-                d = ray.at(depth_.at(ray.x, y));
-                break;
+        if (bands.mirage_moves(ray.x)) {
+            d = over_ground(bands, ray.x, y, range);
+        } else {
+            switch (how_) {
+                case DepthMeeting::March:
+                    d = march(ray, range);
+                    break;
+                case DepthMeeting::FixedPoint:
+                    d = fixed_point(ray);
+                    break;
+                case DepthMeeting::Own:
+                    d = ray.at(depth_.at(ray.x, y));
+                    break;
+            }
         }
         uv[2 * i] = d.x;
         uv[2 * i + 1] = d.y;

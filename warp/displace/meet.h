@@ -11,8 +11,14 @@
 /// Seen so, every pixel is a facet at its own depth. The march goes from facet to facet: in one leap to the depth of
 /// the one under the ray if the path stays upon it, else no farther than kMarchStep pixels; a point where it is blocked
 /// between is bisected to kMarchError.
+///
+/// A ray that a mirage moves skims over ground whose facets lie metres apart, and would be blocked by them. The plane
+/// itself stands in for the pixels upon it (mirage.h): they are in no such ray's way, the ray ends where it meets the
+/// plane, and it leaps over them as far as no object is about. For FixedPoint and Own, too, the depth of such a pixel
+/// is where the ray ends, or the farthest one if it passes over the ground for good. Other rays meet ground as ever.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "warp/displace/band.h"
@@ -58,20 +64,47 @@ class DepthPlane {
     Range all_{};
 };
 
+/// What of a depth plane stands up from the surfaces of mirages, around a tile.
+class MirageGround {
+  public:
+    MirageGround() = default;
+    /// reach: how far around the tile clear() will be asked for [px].
+    MirageGround(const DepthPlane& depth, const PixelWindow& tile, int reach, std::span<const Mirage> mirages);
+
+    bool is(int x, int y, double z) const {
+        for (const Mirage& mirage : mirages_)
+            if (mirage.on_ground(x, y, z)) return true;
+        return false;
+    }
+    /// Whether no object nearer than z, or at z, is in the pixels from (x0, y0) to (x1, y1) or their blocks.
+    bool clear(int x0, int y0, int x1, int y1, double z) const;
+
+  private:
+    std::span<const Mirage> mirages_;
+    PixelWindow window_;                                   ///< of the depth plane
+    int column0_ = 0, row0_ = 0, columns_ = 0, rows_ = 0;  ///< blocks kept
+    std::vector<float> nearest_;                           ///< object in each block
+};
+
 /// The meeting of one tile's rays.
 class MeetTile {
   public:
-    /// tile: within depth.window(); reach: bound of |d| in pixels upon it. depth must outlive this.
-    MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeeting how, int reach);
+    /// tile: within depth.window(); reach: bound of |d| in pixels upon it. mirages: those that row()'s bands have.
+    /// depth and mirages must outlive this.
+    MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeeting how, int reach,
+             std::span<const Mirage> mirages = {});
     /// Sets the displacement of the tile's row y, tile.width interleaved (u, v).
     void row(BandRows& bands, int y, float* uv) const;
 
   private:
+    Shift over_ground(BandRows& bands, int x, int y, const DepthPlane::Range& range) const;
+
     const DepthPlane& depth_;
     PixelWindow tile_;
     DepthMeeting how_;
     std::vector<DepthPlane::Range> ranges_;  ///< March only
     int range_columns_ = 0;
+    MirageGround ground_;
 };
 
 }  // namespace eikonal

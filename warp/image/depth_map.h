@@ -10,9 +10,9 @@
 /// inverse depth, zero metres in the other types without a range, and pixels outside the map's data window. Results are
 /// limited to kNearestDepth or more; so they are always finite and positive.
 ///
-/// Errors. UserError: an unknown channel, integers without a range (a code is no length), a range that is not finite, negative, empty, or
-/// for inverse depth zero. FrameError: a negative depth (with the count), no depth at all (nothing but zeros and NaN),
-/// another size than the footage's, an unreadable file.
+/// Errors. UserError: an unknown channel, integers without a range (a code is no length), a range that is not finite,
+/// negative, empty, or for inverse depth zero. FrameError: a negative depth (with the count), no depth at all (nothing
+/// but zeros and NaN), another size than the footage's, an unreadable file.
 #pragma once
 
 #include <array>
@@ -27,6 +27,7 @@ namespace eikonal {
 
 inline constexpr float kNearestDepth = 1e-6f;  ///< [m]
 inline constexpr float kInfiniteDepth = 1e9f;  ///< [m]
+inline constexpr double kDefaultFar = 1000;    ///< distance of the background where nothing states it [m]
 
 enum class DepthType { Z, Ray, Inverse };
 
@@ -34,7 +35,7 @@ struct DepthOptions {
     std::string channel;  ///< empty: Z, depth.Z, depth, else the only channel, else grey colour
     DepthType type = DepthType::Z;
     std::optional<std::array<double, 2>> range;  ///< NEAR, FAR [m]; NEAR may be the larger
-    double far = 1000;                           ///< of the background [m] > 0
+    double far = kDefaultFar;                    ///< of the background [m] > 0
 };
 
 /// Depth of every pixel of a window, finite and positive.

@@ -26,4 +26,7 @@ struct LinearImage {
     std::vector<float> pixels;  ///< data.width * data.height * 4, lanes R G B A
 };
 
+/// The pixels of `image` on `window`, black and transparent where it has none.
+LinearImage cropped(const LinearImage& image, const PixelWindow& window);
+
 }  // namespace eikonal

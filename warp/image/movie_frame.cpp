@@ -1,19 +1,15 @@
 #include "warp/image/movie_frame.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <stdexcept>
 
 #include "noise/dispatch.h"
 #include "warp/image/movie_colour.h"
+#include "warp/image/rows.h"
 
 namespace eikonal {
 
 namespace {
-
-constexpr int kRowsPerTask = 16;
 
 std::size_t at(int row, int width) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
@@ -96,12 +92,6 @@ void check(const MovieFrame& frame) {
     }
 }
 
-template <class Row>
-void for_rows(int rows, const Row& row) {
-    tbb::parallel_for(tbb::blocked_range<int>(0, rows, kRowsPerTask),
-                      [&](const tbb::blocked_range<int>& range) { row(range.begin(), range.end()); });
-}
-
 /// Enlarges one chroma plane to full-width rows of values.
 class ChromaRows {
   public:
@@ -170,13 +160,13 @@ class FrameStore {
         const bool chroma = !format_.rgb && !format_.gray;
         if (chroma)
             for (auto& plane : reduced_) plane.resize(at(format_.height, format_.plane_width(1)));
-        for_rows(format_.height, [&](int begin, int end) {
+        for_row_runs(format_.height, [&](int begin, int end) {
             std::vector<float> scratch(static_cast<std::size_t>(format_.width) * 6);
             for (int y = begin; y < end; ++y)
                 if (needed_[static_cast<std::size_t>(y)]) store_row(y, scratch.data());
         });
         if (chroma)
-            for_rows(format_.plane_height(1), [&](int begin, int end) {
+            for_row_runs(format_.plane_height(1), [&](int begin, int end) {
                 for (int c = begin; c < end; ++c) store_chroma_row(c);
             });
     }
@@ -311,19 +301,6 @@ class FrameStore {
     std::array<std::vector<float>, 2> reduced_;
 };
 
-/// The display window of `image`, black where it has no data.
-LinearImage display_part(const LinearImage& image) {
-    LinearImage part{image.display, image.display, image.pixel_aspect, {}};
-    part.pixels.assign(image.display.area() * 4, 0.0F);
-    const PixelWindow &from = image.data, &to = image.display;
-    const int left = std::max(from.x0, to.x0), right = std::min(from.x0 + from.width, to.x0 + to.width);
-    for (int y = std::max(from.y0, to.y0); left < right && y < std::min(from.y0 + from.height, to.y0 + to.height); ++y)
-        std::copy_n(image.pixels.data() + 4 * (at(y - from.y0, from.width) + static_cast<std::size_t>(left - from.x0)),
-                    4 * (right - left),
-                    part.pixels.data() + 4 * (at(y - to.y0, to.width) + static_cast<std::size_t>(left - to.x0)));
-    return part;
-}
-
 }  // namespace
 
 LinearImage load_frame(const MovieFrame& frame) {
@@ -343,7 +320,7 @@ void load_frame(const MovieFrame& frame, LinearImage& image) {
     image.pixel_aspect = format.pixel_aspect;
     image.pixels.resize(at(format.height, width) * 4);
     const int lanes = format.gray ? 1 : 3;
-    for_rows(format.height, [&](int begin, int end) {
+    for_row_runs(format.height, [&](int begin, int end) {
         const auto count = static_cast<std::size_t>(width);
         std::vector<float> rgb(3 * count), planes(3 * count), alpha(count, 1.0F), samples;
         for (int y = begin; y < end; ++y) {
@@ -387,7 +364,7 @@ MovieFrame frame_from_linear(const LinearImage& image, const MovieFormat& format
     if (image.data == image.display)
         FrameStore(frame, image, {}, true, gray_picture).run();
     else
-        FrameStore(frame, display_part(image), {}, true, gray_picture).run();
+        FrameStore(frame, cropped(image, image.display), {}, true, gray_picture).run();
     return frame;
 }
 

@@ -61,9 +61,9 @@ struct MovieReader::State {
     bool looked_ahead = false;             ///< `ahead` holds the packet after the last one sent
     bool finished = false;                 ///< file and decoder are at their end
     bool interlaced = false;
-    int number = 0;             ///< of the last frame decoded
-    std::int64_t next_pts = 0;  ///< for frames without time stamps
-    std::int64_t end_pts = 0;   ///< largest end of a frame so far
+    int number = 0;                ///< of the last frame decoded
+    std::int64_t next_pts = 0;     ///< for frames without time stamps
+    std::int64_t end_pts = 0;      ///< largest end of a frame so far
     std::deque<FrameError> early;  ///< of the damaged frames before the first whole one, not yet told
     std::set<std::pair<std::int64_t, std::int64_t>> incomplete;  ///< position and pts of packets that lack data
     std::string read_error;                                      ///< why the file ended before its end

@@ -1,6 +1,3 @@
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -8,13 +5,12 @@
 
 #include "warp/image/picture.h"
 #include "warp/image/pixel_codec.h"
+#include "warp/image/rows.h"
 
 namespace eikonal {
 namespace {
 
 using OIIO::TypeDesc;
-
-constexpr int kRowsPerTask = 16;
 
 /// A group's channels as places in the stored pixel.
 struct Lane {
@@ -55,13 +51,6 @@ struct Layout {
         if (contiguous && (alpha.type == TypeDesc::HALF || alpha.type == TypeDesc::FLOAT)) packed = alpha.type;
     }
 };
-
-template <class Row>
-void for_rows(std::size_t height, Row row) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height, kRowsPerTask), [&](const auto& rows) {
-        for (std::size_t y = rows.begin(); y < rows.end(); ++y) row(y);
-    });
-}
 
 /// Codes of one channel to floats: linear light already if `curve` is given and the type is an integer's of 8 or 16
 /// bits (a table look-up); returns whether that was done.

@@ -36,6 +36,9 @@ struct Camera {
     dvec2 pixel(dvec2 s) const { return {center.x + f_px * s.x, center.y - f_px * pixel_aspect * s.y}; }
 };
 
+/// Pixels of a picture whose size neither the scene nor any footage states.
+inline constexpr std::array<int, 2> kDefaultResolution{1920, 1080};
+
 /// {right, up, forward} of a camera at `position` that looks at a point; nothing if the points coincide or `up` is zero
 /// or parallel to the view (within 1e-6 rad).
 std::optional<std::array<dvec3, 3>> view_axes(dvec3 position, dvec3 look_at, dvec3 up);

@@ -58,8 +58,13 @@ std::string_view nearest(std::string_view name, std::span<const std::string_view
     return best;
 }
 
+std::string did_you_mean(std::string_view name, std::span<const std::string_view> valid) {
+    const std::string_view close = nearest(name, valid);
+    return close.empty() ? "" : fmt::format("; did you mean '{}'?", close);
+}
+
 std::string suggestion(std::string_view name, std::span<const std::string_view> valid) {
-    if (const std::string_view v = nearest(name, valid); !v.empty()) return fmt::format("; did you mean '{}'?", v);
+    if (std::string text = did_you_mean(name, valid); !text.empty()) return text;
     return fmt::format("; valid: {}", fmt::join(valid, ", "));
 }
 

@@ -19,7 +19,10 @@ std::string shortened(std::string_view text);
 /// The valid name with the fewest edits to `name`; empty if none is similar.
 std::string_view nearest(std::string_view name, std::span<const std::string_view> valid);
 
-/// "; did you mean 'x'?", or else "; valid: …", the list of valid names.
+/// "; did you mean 'x'?", or nothing.
+std::string did_you_mean(std::string_view name, std::span<const std::string_view> valid);
+
+/// The same, or else "; valid: …", the list of valid names.
 std::string suggestion(std::string_view name, std::span<const std::string_view> valid);
 
 }  // namespace eikonal::scene_file

@@ -31,8 +31,10 @@ void mix_seeds(Scene& scene, std::uint64_t scene_seed) {
         const RandomStream stream(scene_seed, "medium", i);
         if (auto* turbulence = std::get_if<TurbulenceSpec>(&scene.media[i]))
             turbulence->seed = stream.bits(turbulence->seed);
-        if (auto* blobs = std::get_if<BlobsSpec>(&scene.media[i]); blobs && blobs->wind)
-            blobs->wind->seed = stream.bits(blobs->wind->seed);
+        if (auto* blobs = std::get_if<BlobsSpec>(&scene.media[i])) {
+            blobs->seed = stream.bits(blobs->seed);
+            if (blobs->wind) blobs->wind->seed = stream.bits(blobs->wind->seed);
+        }
     }
 }
 

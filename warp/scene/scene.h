@@ -26,6 +26,9 @@ enum class Projection { Perspective, Orthographic };
 inline constexpr double kLargestValue = 1e12;       ///< in magnitude
 inline constexpr double kSmallestPositive = 1e-12;  ///< of what must be > 0
 
+/// Of scenes and footage that state none: frames a second.
+inline constexpr double kDefaultFps = 24;
+
 /// Range of a field of view [degrees], so that the focal length in pixels is finite and positive.
 inline constexpr double kSmallestFov = 1e-6;
 inline constexpr double kLargestFov = 179.99;
@@ -81,6 +84,8 @@ struct ObjectSpec {
     std::optional<std::filesystem::path> texture;  ///< excludes color
     dvec3 color{0.5, 0.5, 0.5};                    ///< linear
     bool emissive = false;                         ///< shows its colour whatever the light
+    double mirror = 0;                             ///< part of the light that it reflects as a mirror does, 0 … 1
+    std::optional<double> refractive_index;        ///< made of glass: absolute index > 0; excludes mirror
 };
 
 /// [light]: a sun. Without it, objects are emissive. Colours are linear, >= 0.

@@ -219,9 +219,12 @@ static Keys keys(BlobSpec& b) {
 
 static Keys keys(BlobSourceSpec& s) {
     return {
-        {"from", "one end of the source [m]", s.from},     {"to", "its other end [m]", s.to},
-        {"rate", "blobs a second", s.rate, {at_least(0)}}, {"temperature", "at birth [K]", s.temperature, {positive()}},
-        {"sigma", "radius [m]", s.sigma, {positive()}},    {"cooling", "[1/s]", s.cooling, {at_least(0)}},
+        {"from", "one end of the source [m]", s.from},
+        {"to", "its other end [m]", s.to},
+        {"rate", "blobs a second", s.rate, {at_least(0)}},
+        {"temperature", "at birth [K]", s.temperature, {positive()}},
+        {"sigma", "radius [m]", s.sigma, {positive()}},
+        {"cooling", "[1/s]", s.cooling, {at_least(0)}},
         {"growth", "of sigma squared, by diffusion [m²/s]", s.growth, {at_least(0)}},
         {"lifetime", "[s]", s.lifetime, {positive()}},
     };
@@ -238,6 +241,7 @@ static Keys keys(WindSpec& w) {
 
 static Keys keys(BlobsSpec& b) {
     return {
+        {"seed", "of its random numbers", b.seed},
         {"blob", "explicit blobs", b.blobs},
         {"source", "sources of blobs", b.sources},
         {"wind", "that carries the blobs", b.wind},
@@ -307,6 +311,9 @@ static Keys keys(ObjectSpec& o) {
         {"texture", "a picture", o.texture},
         Key("color", "linear", o.color, {at_least(0)}).excludes("texture", o.texture),
         {"emissive", "shows its colour whatever the light", o.emissive},
+        Key("mirror", "part of the light that is reflected", o.mirror, {between(0, 1)})
+            .excludes("refractive_index", o.refractive_index),
+        {"refractive_index", "of glass", o.refractive_index, {between(0.1, 100)}},
     };
 }
 

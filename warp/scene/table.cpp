@@ -151,9 +151,8 @@ std::size_t read_choice(const Entry& entry, std::span<const std::string_view> va
     const std::optional<std::string> value = entry.node.value_exact<std::string>();
     const auto found = value ? std::find(valid.begin(), valid.end(), *value) : valid.end();
     if (found == valid.end()) {
-        const std::string_view close = value ? nearest(*value, valid) : std::string_view();
         fail_value(entry, fmt::format("must be \"{}\"", fmt::join(valid, "\" or \"")) +
-                              (close.empty() ? "" : fmt::format("; did you mean '{}'?", close)));
+                              (value ? did_you_mean(*value, valid) : ""));
     }
     return static_cast<std::size_t>(found - valid.begin());
 }

@@ -1,0 +1,390 @@
+#include "noise/field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "noise/blob_instant.h"
+#include "noise/blobs.h"
+#include "noise/error.h"
+#include "noise/gradient_noise.h"
+#include "noise/lattice_snapshot.h"
+#include "noise/portable_math.h"
+#include "noise/profile.h"
+#include "noise/refractivity.h"
+#include "noise/screen_force.h"
+#include "noise/surface.h"
+#include "noise/ways.h"
+
+namespace eikonal {
+namespace {
+
+/// A step is at most this part of a feature's size.
+constexpr double kPartOfCell = 0.5, kPartOfDropoff = 0.25, kPartOfProfile = 0.125;
+/// Bytes a node of a snapshot while it is made: its spectrum, samples and coefficients.
+constexpr double kSnapshotBytes = 12;
+
+// Every medium at an instant has sample(x) and jet(x), without exaggeration, and longest_step(x, d), clear_way(x, d)
+// and way_to_edge(x, d) as FieldInstant's. (Thin screens have force and force_jet instead.)
+
+/// Where turbulence with a falloff, or none, is. Without one it is everywhere.
+struct TurbulenceBounds {
+    std::optional<Falloff> falloff;
+    double step;
+
+    double height(const dvec3& x) const { return glm::dot(x - falloff->origin, falloff->normal); }
+    double top() const { return -falloff->length * portable::log(kNegligibleIndex); }
+
+    double longest_step(const dvec3& x, const dvec3&) const {
+        return step + (falloff ? std::max(0.0, height(x) - top()) : 0.0);
+    }
+    double clear_way(const dvec3& x, const dvec3& d) const {
+        return falloff ? way_into_layer(height(x), glm::dot(d, falloff->normal), -kNever, top()) : 0;
+    }
+    double way_to_edge(const dvec3& x, const dvec3& d) const {
+        return falloff ? way_to_plane(height(x), glm::dot(d, falloff->normal)) : kNever;
+    }
+};
+
+struct LatticeInstant : TurbulenceBounds {
+    LatticeSnapshot snapshot;
+
+    IndexSample sample(const dvec3& x) const { return snapshot.smooth_sample(x); }
+    IndexJet jet(const dvec3& x) const { return snapshot.jet(x); }
+};
+
+struct NoiseInstant : TurbulenceBounds {
+    const GradientNoiseField* field;
+    double t;
+
+    IndexSample sample(const dvec3& x) const { return field->sample(x, t); }
+    IndexJet jet(const dvec3& x) const { return field->jet(x, t); }
+};
+
+struct SurfaceInstant {
+    const SurfaceLayer* layer;
+    double bend;  ///< the layer's largest |F| [1/m]
+
+    IndexSample sample(const dvec3& x) const { return layer->sample(x); }
+    IndexJet jet(const dvec3& x) const { return layer->jet(x); }
+    /// A step may change the height by a part of the dropoff, growing above the layer's knee; over s metres of way it
+    /// does so by at most climb s + bend s²/2.
+    double longest_step(const dvec3& x, const dvec3& d) const {
+        const double h = layer->height(x), within = std::clamp(h, 0.0, layer->top());
+        const double part = kPartOfDropoff * (layer->dropoff() + std::max(0.0, within - layer->knee()));
+        const double climb = std::abs(layer->climb(d));
+        return std::abs(h - within) + 2 * part / (climb + std::sqrt(climb * climb + 2 * bend * part));
+    }
+    double clear_way(const dvec3& x, const dvec3& d) const {
+        return way_into_layer(layer->height(x), layer->climb(d), 0, layer->top());
+    }
+    double way_to_edge(const dvec3& x, const dvec3& d) const { return way_to_plane(layer->height(x), layer->climb(d)); }
+};
+
+struct BlobsInstant {
+    BlobInstant blobs;
+
+    IndexSample sample(const dvec3& x) const { return blobs.sample(x); }
+    IndexJet jet(const dvec3& x) const { return blobs.jet(x); }
+    double longest_step(const dvec3& x, const dvec3&) const { return blobs.longest_step(x); }
+    double clear_way(const dvec3& x, const dvec3& d) const { return blobs.clear_way(x, d); }
+    double way_to_edge(const dvec3&, const dvec3&) const { return kNever; }
+};
+
+struct ProfileInstant {
+    const Profile* profile;
+
+    IndexSample sample(const dvec3& x) const {
+        const IndexJet jet = profile->jet(x);
+        return {jet.n, jet.gradient};
+    }
+    IndexJet jet(const dvec3& x) const { return profile->jet(x); }
+    double longest_step(const dvec3& x, const dvec3&) const { return kPartOfProfile * profile->scale(x); }
+    double clear_way(const dvec3& x, const dvec3& d) const { return profile->clear_way(x, d); }
+    double way_to_edge(const dvec3& x, const dvec3& d) const { return profile->way_to_edge(x, d); }
+};
+
+struct LatticeMedium {
+    LatticeField field;
+    int padding;
+};
+struct ScreenMedium {
+    ScreenField field;
+    std::optional<Falloff> falloff;
+};
+using Medium = std::variant<LatticeMedium, GradientNoiseField, ScreenMedium, SurfaceLayer, BlobCloud, Profile>;
+using Instant = std::variant<LatticeInstant, NoiseInstant, SurfaceInstant, BlobsInstant, ProfileInstant>;
+
+/// What turns the sum of the media into force.
+struct Laws {
+    RayEquation equation = RayEquation::Physical;
+    double ambient = 0;  ///< n_a - 1
+    double exaggeration = 1;
+
+    /// What multiplies ∇(n_i - n_ambient) where n is near 1.
+    double strength() const { return exaggeration * (equation == RayEquation::Paper ? 0.5 : 1); }
+};
+
+bool has_strength(const TurbulenceSpec& spec) {
+    return (spec.spectrum == SpectrumKind::VonKarman ? spec.cn2 : spec.strength) != 0;
+}
+
+double lattice_step(const LatticeField& field) {
+    const LatticeGeometry& g = field.geometry();
+    double finest = std::min({g.spacing(0), g.spacing(1), g.spacing(2)});
+    if (field.spec().spectrum == SpectrumKind::VonKarman) finest = std::max(finest, 0.5 * field.spec().inner_scale);
+    return kPartOfCell * finest;
+}
+
+}  // namespace
+
+struct FieldInstant::State {
+    std::shared_ptr<const void> owner;  ///< of what the media point to
+    Laws laws;
+    std::vector<Instant> media;
+    std::vector<ScreenForce> screens;
+
+    /// n and its derivatives, absolute but for n's 1; no derivatives where n <= 0.
+    template <class Jet, class Take>
+    Jet sum(Take&& take) const {
+        Jet total{};
+        for (const Instant& medium : media) std::visit([&](const auto& m) { add(total, take(m)); }, medium);
+        total.n = laws.ambient + laws.exaggeration * total.n;
+        if (!(total.n > -1)) return Jet{std::max(total.n, -kLargestIndex)};
+        scale(total, laws.exaggeration);
+        return total;
+    }
+    IndexSample sample(const dvec3& x) const {
+        return sum<IndexSample>([&](const auto& m) { return m.sample(x); });
+    }
+    IndexJet jet(const dvec3& x) const {
+        return sum<IndexJet>([&](const auto& m) { return m.jet(x); });
+    }
+
+    /// The least of what every medium and its screens say.
+    template <class Ask>
+    double least(Ask&& ask) const {
+        double result = kNever;
+        for (const Instant& medium : media)
+            std::visit([&](const auto& m) { result = std::min(result, ask(m)); }, medium);
+        for (const ScreenForce& s : screens) result = std::min(result, ask(s));
+        return result;
+    }
+
+  private:
+    static void add(IndexSample& a, const IndexSample& b) {
+        a.n += b.n;
+        a.gradient += b.gradient;
+    }
+    static void add(IndexJet& a, const IndexJet& b) {
+        a.n += b.n;
+        a.gradient += b.gradient;
+        a.hessian += b.hessian;
+    }
+    static void scale(IndexSample& a, double factor) { a.gradient *= factor; }
+    static void scale(IndexJet& a, double factor) {
+        a.gradient *= factor;
+        a.hessian *= factor;
+    }
+};
+
+FieldInstant::FieldInstant(std::unique_ptr<State> state) : state_(std::move(state)) {}
+FieldInstant::FieldInstant(FieldInstant&&) noexcept = default;
+FieldInstant::~FieldInstant() = default;
+
+dvec3 FieldInstant::force(const dvec3& x, const dvec3& p) const {
+    const IndexSample s = state_->sample(x);
+    dvec3 force = (state_->laws.equation == RayEquation::Paper ? 0.5 : 1 + s.n) * s.gradient;
+    for (const ScreenForce& screens : state_->screens) force += screens.force(x, p);
+    return force;
+}
+
+ForceJet FieldInstant::force_jet(const dvec3& x, const dvec3& p) const {
+    const IndexJet s = state_->jet(x);
+    ForceJet result;
+    if (state_->laws.equation == RayEquation::Paper) {
+        result.force = 0.5 * s.gradient;
+        result.by_position = 0.5 * s.hessian;
+    } else {
+        result.force = (1 + s.n) * s.gradient;
+        result.by_position = (1 + s.n) * s.hessian + glm::outerProduct(s.gradient, s.gradient);
+    }
+    for (const ScreenForce& screens : state_->screens) {
+        const ForceJet jet = screens.force_jet(x, p);
+        result.force += jet.force;
+        result.by_position += jet.by_position;
+        result.by_direction += jet.by_direction;
+    }
+    return result;
+}
+
+double FieldInstant::refractivity(const dvec3& x) const {
+    return state_->sample(x).n;
+}
+
+double FieldInstant::speed(const dvec3& x) const {
+    const double n = std::max(0.0, 1 + refractivity(x));
+    return state_->laws.equation == RayEquation::Paper ? std::sqrt(n) : n;
+}
+
+double FieldInstant::longest_step(const dvec3& x, const dvec3& d) const {
+    return state_->least([&](const auto& m) { return m.longest_step(x, d); });
+}
+
+double FieldInstant::longest_step(const dvec3& x) const {
+    // only a surface tells directions apart, and its shortest step is that along its normal
+    return state_->least([&](const auto& m) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(m)>, SurfaceInstant>)
+            return m.longest_step(x, m.layer->normal());
+        else
+            return m.longest_step(x, dvec3(0));
+    });
+}
+
+double FieldInstant::clear_way(const dvec3& x, const dvec3& d) const {
+    return state_->least([&](const auto& m) { return m.clear_way(x, d); });
+}
+
+double FieldInstant::way_to_edge(const dvec3& x, const dvec3& d) const {
+    return state_->least([&](const auto& m) { return m.way_to_edge(x, d); });
+}
+
+struct Field::State {
+    Laws laws;
+    std::optional<ScreenFrame> frame;
+    std::uint64_t memory;  ///< left of what is allowed
+    double interpolation_error = 0;
+    std::vector<Medium> media;
+
+    void take(std::uint64_t bytes) { memory -= std::min(memory, bytes); }
+
+    void add(const TurbulenceSpec& spec) {
+        if (!has_strength(spec)) return;
+        switch (spec.form) {
+            case TurbulenceForm::Lattice:
+                return add_lattice(spec);
+            case TurbulenceForm::GradientNoise:
+                media.emplace_back(GradientNoiseField(spec));
+                return;
+            case TurbulenceForm::Screens:
+                break;
+        }
+        if (!frame) throw std::logic_error("Field: thin screens without a frame");
+        std::vector<ScreenGeometry> geometry = layout_screens(spec, frame->view);
+        check_screens(spec, geometry, memory);
+        take(screens_bytes(spec, geometry));
+        media.emplace_back(ScreenMedium{ScreenField(spec, std::move(geometry), frame->right, frame->up), spec.falloff});
+    }
+
+    void add_lattice(const TurbulenceSpec& spec) {
+        const LatticeGeometry geometry = choose_lattice(spec);
+        check_lattice(spec, geometry, memory);
+        take(lattice_bytes(spec, geometry));
+        LatticeField field(spec, geometry);
+        int padding = 1;
+        const auto bytes = [&](int p) {
+            return p > 1 ? kSnapshotBytes * static_cast<double>(geometry.spatial_samples()) * p * p * p : 0.0;
+        };
+        double error = snapshot_slope_error(field, padding);
+        for (const int p : {2, 3, 4, 5, 6, 8}) {
+            if (error <= kInterpolationError || bytes(p) > static_cast<double>(memory)) break;
+            padding = p;
+            error = snapshot_slope_error(field, p);
+        }
+        take(static_cast<std::uint64_t>(bytes(padding)));
+        interpolation_error = std::max(interpolation_error, error);
+        media.emplace_back(LatticeMedium{std::move(field), padding});
+    }
+
+    void add(const SurfaceSpec& spec, const IndexLaw& law) {
+        SurfaceLayer layer(spec, law);
+        if (layer.bends()) media.emplace_back(std::move(layer));
+    }
+
+    void add(const BlobsSpec& spec, const IndexLaw& law, const std::string& name) {
+        BlobCloud cloud(spec, law, name);
+        if (cloud.most() > 0) media.emplace_back(std::move(cloud));
+    }
+};
+
+Field::Field(const std::vector<MediumSpec>& media, const OpticsSpec& optics, const std::optional<ScreenFrame>& frame,
+             std::uint64_t memory_limit)
+    : state_(std::make_shared<State>()) {
+    const IndexLaw law = index_law(optics);
+    state_->laws = {optics.ray_equation, law.ambient(), optics.exaggeration};
+    state_->frame = frame;
+    state_->memory = memory_limit;
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        if (const auto* profile = std::get_if<ProfileSpec>(&media[i])) {
+            if (media.size() > 1)
+                throw UserError(
+                    fmt::format("medium.{}: a profile is the absolute index of all space and stands alone; remove it "
+                                "or the other {}",
+                                i, media.size() == 2 ? "medium" : "media"));
+            state_->laws = {optics.ray_equation, 0, 1};
+            state_->media.emplace_back(Profile(*profile));
+            return;
+        }
+        if (optics.exaggeration == 0) continue;
+        const std::string name = fmt::format("medium.{}", i);
+        if (const auto* blobs = std::get_if<BlobsSpec>(&media[i])) state_->add(*blobs, law, name);
+        if (const auto* surface = std::get_if<SurfaceSpec>(&media[i])) state_->add(*surface, law);
+        if (const auto* turbulence = std::get_if<TurbulenceSpec>(&media[i])) {
+            try {
+                state_->add(*turbulence);
+            } catch (const UserError& error) {
+                throw UserError(name + ": " + error.what());
+            }
+        }
+    }
+}
+
+Field::~Field() = default;
+Field::Field(Field&&) noexcept = default;
+
+FieldInstant Field::at(double t) const {
+    auto instant = std::make_unique<FieldInstant::State>();
+    instant->owner = state_;
+    instant->laws = state_->laws;
+    const Laws& laws = state_->laws;
+    for (const Medium& medium : state_->media) {
+        if (const auto* lattice = std::get_if<LatticeMedium>(&medium)) {
+            instant->media.emplace_back(LatticeInstant{{lattice->field.spec().falloff, lattice_step(lattice->field)},
+                                                       LatticeSnapshot(lattice->field, t, lattice->padding)});
+        } else if (const auto* noise = std::get_if<GradientNoiseField>(&medium)) {
+            instant->media.emplace_back(
+                NoiseInstant{{noise->falloff(), kPartOfCell * noise->smallest_cell()}, noise, t});
+        } else if (const auto* screens = std::get_if<ScreenMedium>(&medium)) {
+            instant->screens.emplace_back(screens->field, t, *state_->frame, screens->falloff, laws.strength());
+        } else if (const auto* surface = std::get_if<SurfaceLayer>(&medium)) {
+            const double n = 1 + laws.ambient + std::max(0.0, laws.exaggeration * surface->above_ambient(0));
+            instant->media.emplace_back(
+                SurfaceInstant{surface, std::abs(laws.strength()) * surface->largest_slope() * n});
+        } else if (const auto* cloud = std::get_if<BlobCloud>(&medium)) {
+            const std::vector<Blob> blobs = cloud->at(t);
+            instant->media.emplace_back(BlobsInstant{BlobInstant(blobs)});
+        } else {
+            instant->media.emplace_back(ProfileInstant{&std::get<Profile>(medium)});
+        }
+    }
+    return FieldInstant(std::move(instant));
+}
+
+bool Field::bends() const {
+    return !state_->media.empty();
+}
+
+double Field::interpolation_error() const {
+    return state_->interpolation_error;
+}
+
+}  // namespace eikonal

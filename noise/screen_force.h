@@ -1,0 +1,56 @@
+/// Thin screens of one medium at one instant, as a force along bent rays (noise/field.h): the bend of slab m spread
+/// evenly over the way through it, *added*, and taken at the point q where the ray's tangent meets the screen,
+///
+///     F⊥ = ∇⊥(g ψ_m)(q)/(√L δ),   q = x⊥ + (w_m - z) p⊥/p_z,   L = |p|/|p_z|,   near_m <= z < far_m
+///
+/// g the falloff at q. A straight ray crosses L δ metres, hence is bent by √L ∇⊥(gψ), the root because the variance of
+/// a bend grows as the air crossed, and displaced by √L³ lever_m(z) ∇⊥(gψ): what the warp's first order says
+/// (noise/screen_layout.h). q and so F are constant along a straight ray within a slab, from whichever side it comes.
+/// At a slab's end F is that of the slab which the ray goes into. Slabs are fixed in the world.
+///
+/// Steeper rays than kSteepestRay are not bent: thin screens mean nothing for a ray along them.
+#pragma once
+
+#include <optional>
+
+#include "noise/field.h"
+#include "noise/screens.h"
+
+namespace eikonal {
+
+/// L of the most slanted ray that screens bend.
+inline constexpr double kSteepestRay = 100;
+
+/// Immutable, thread-safe.
+class ScreenForce {
+  public:
+    /// strength: multiplies ∇ψ (ray equation and exaggeration). The frame's axes are those of `field`.
+    ScreenForce(const ScreenField& field, double t, const ScreenFrame& frame, const std::optional<Falloff>& falloff,
+                double strength);
+
+    dvec3 force(const dvec3& x, const dvec3& p) const;
+    ForceJet force_jet(const dvec3& x, const dvec3& p) const;
+
+    /// The longest step [m] from x: one slab, less if the ray bends so much on it that the tangent's meeting point
+    /// moves by a good part of a cell; plus the way to the slabs. The same for every d.
+    double longest_step(const dvec3& x, const dvec3& d) const;
+    /// To the first slab: 0 within.
+    double clear_way(const dvec3& x, const dvec3& d) const;
+    /// To the next end of a slab.
+    double way_to_edge(const dvec3& x, const dvec3& d) const;
+
+  private:
+    struct Meeting;
+    std::optional<Meeting> meet(const dvec3& x, const dvec3& p) const;
+    double depth(const dvec3& x) const;
+    double rate(const dvec3& d) const;
+
+    ScreenFrame frame_;
+    std::optional<Falloff> falloff_;
+    double strength_;
+    std::vector<ScreenSnapshot> screens_;
+    std::vector<double> ends_;   ///< depths: near end of the first slab, far ends of all
+    std::vector<double> steps_;  ///< longest step inside each slab
+};
+
+}  // namespace eikonal

@@ -1,0 +1,271 @@
+#include "reference/bent_ray.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "noise/portable_math.h"
+#include "reference/baselines.h"
+#include "reference/perturbation.h"
+
+namespace eikonal::reference {
+namespace {
+
+/// Places closer together than this, relative to 1 m and to their coordinates, are the same.
+constexpr double kSamePlace = 1e-12;
+/// F counts as constant up to an edge where that changes the direction by less [rad].
+constexpr double kEdgeTurn = 1e-12;
+
+/// A step of adaptive evaluates F at 0, 0.2, 0.3, 0.8, 0.89 and 1 of itself: this many of a field's longest steps leave
+/// no wider gap between.
+constexpr double kStretch = 2;
+/// A step may grow to this many times the last one, where the error is below this part of what is allowed.
+constexpr double kMostGrowth = 3.5, kMostGrowthError = 1e-3;
+/// How far before an edge its direction is probed, in parts of the longest step.
+constexpr double kProbe = 1e-3;
+
+bool finite(const dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+class Tracer {
+  public:
+    Tracer(const FieldInstant& field, const Geometry* geometry, const TraceSettings& settings, Bundle* bundle,
+           const StepRecorder& recorder)
+        : field_(field),
+          settings_(settings),
+          tolerance_(std::max(settings.tolerance_px * settings.pixel, kFinestTolerance)),
+          bundle_(bundle),
+          recorder_(recorder),
+          search_(geometry, chord_deviation(settings), settings.distance) {}
+
+    BentHit run(const dvec3& origin, const dvec3& direction);
+
+  private:
+    using End = BentHit::End;
+
+    bool go_straight(double way);
+    std::optional<End> go_bent();
+    bool accept(const Step& step);
+    double error(const Step& step, double speed) const;
+    double same_place() const;
+    double nudge(double way);
+    void enter(double reach, const dvec3& before);
+    void finish(const SurfaceSearch::Met& met);
+
+    /// What was known at the start of one of the last steps, in case a surface is met on it.
+    struct Mark {
+        double u = -1, length = 0, error = 0;
+        int steps = 0;
+        Bundle bundle;
+    };
+
+    const FieldInstant& field_;
+    const TraceSettings& settings_;
+    double tolerance_;  ///< [rad or m]
+    Bundle* bundle_;
+    const StepRecorder& recorder_;
+    SurfaceSearch search_;
+    RayState state_;
+    dvec3 force_{0};
+    double proposed_ = std::numeric_limits<double>::infinity();  ///< length of the next step by its error [m]
+    double launch_speed_ = 1;
+    double nudge_ = 0;  ///< of the last step, if that only went over an edge [m]
+    double error_ = 0;  ///< [rad or m]
+    BentHit result_;
+    std::array<Mark, SurfaceSearch::kMostPieces> marks_;
+    std::size_t accepted_ = 0;
+};
+
+double Tracer::same_place() const {
+    const dvec3 size = glm::abs(state_.x);
+    return kSamePlace * (1 + std::max(size.x, std::max(size.y, size.z)));
+}
+
+/// Final displacement that the local errors of a step may cause, as an angle or in metres.
+double Tracer::error(const Step& step, double speed) const {
+    const double x = glm::length(step.error_x), p = glm::length(step.error_p) / speed;
+    const double s = result_.length + step.h * speed;
+    return settings_.perspective ? x / (settings_.distance + s) + p : x + p * std::max(settings_.far - s, 0.0);
+}
+
+/// Takes a step into the ray. True if that ends it at a surface.
+bool Tracer::accept(const Step& step) {
+    Mark& mark = marks_[accepted_++ % marks_.size()];
+    mark.u = step.from.u;
+    mark.length = result_.length;
+    mark.error = error_;
+    mark.steps = result_.steps;
+    if (bundle_) {
+        mark.bundle = *bundle_;
+        advance(field_, step, 1, *bundle_);
+    }
+    if (recorder_) recorder_(step);
+    result_.length += step.length();
+    state_ = step.to();
+    if (const auto met = search_.add(step)) {
+        finish(*met);
+        return true;
+    }
+    return false;
+}
+
+void Tracer::finish(const SurfaceSearch::Met& met) {
+    for (const Mark& mark : marks_) {
+        if (mark.u != met.step.from.u) continue;
+        result_.length = mark.length + met.step.length(met.theta);
+        error_ = mark.error;
+        result_.steps = mark.steps;
+        if (bundle_) {
+            *bundle_ = mark.bundle;
+            advance(field_, met.step, met.theta, *bundle_);
+        }
+    }
+    error_ += error(met.step, glm::length(met.step.from.p));
+    result_.end = End::Surface;
+    result_.hit = true;
+    result_.surface = met.hit;
+    state_ = met.step.at(met.theta);
+    state_.x = met.hit.point;
+}
+
+/// How far beyond an edge `way` ahead to go on. Where rounding keeps the ray this side of one it only grazes, ever
+/// more.
+double Tracer::nudge(double way) {
+    nudge_ = way <= 2 * nudge_ ? 2 * nudge_ : same_place();
+    return nudge_;
+}
+
+/// Behind an edge where F was `before`; no other lies within `reach` [m] before it.
+void Tracer::enter(double reach, const dvec3& before) {
+    force_ = field_.force(state_.x, state_.p);
+    if (bundle_)
+        pass_edge(field_, state_, std::min(reach, kProbe * field_.longest_step(state_.x)), before, force_, *bundle_);
+}
+
+/// Over a way without any medium, and into the next. True if a surface ends the ray.
+bool Tracer::go_straight(double way) {
+    const double speed = glm::length(state_.p);
+    const double remaining = std::min(settings_.far - result_.length, (settings_.u_end - state_.u) * speed);
+    ++result_.steps;
+    if (way >= remaining) return accept(straight_step(state_, remaining));
+    if (accept(straight_step(state_, way + nudge(way)))) return true;
+    enter(0.5 * way, dvec3(0));
+    return false;
+}
+
+/// One step, as long as the field and its error allow; what ends the ray, if anything.
+std::optional<BentHit::End> Tracer::go_bent() {
+    const bool adaptive = settings_.integrator == Integrator::Adaptive;
+    const double speed = glm::length(state_.p);
+    const dvec3 d = state_.p / speed;
+    const double feature = field_.longest_step(state_.x, d);
+    double length = std::min({adaptive ? kStretch * feature : feature, settings_.far - result_.length,
+                              (settings_.u_end - state_.u) * speed});
+    if (settings_.step > 0) length = std::min(length, settings_.step * (speed / launch_speed_));
+    if (adaptive) length = std::min(length, proposed_);
+    const double place = same_place(), edge = field_.way_to_edge(state_.x, d);
+    const bool cut = edge <= length + place;
+    if (cut) {
+        const double bend = glm::length(force_) / (speed * speed) * edge;
+        if (edge <= std::max(place, 2 * nudge_) || bend * edge <= kEdgeTurn * feature) {
+            ++result_.steps;
+            const dvec3 before = force_;
+            if (accept(parabolic_step(state_, force_, (edge + nudge(edge)) / speed))) return End::Surface;
+            enter(kProbe * feature, before);
+            return {};
+        }
+        // It bends towards the edge or away from it.
+        length = edge * (1 - std::min(0.5, bend));
+    }
+    nudge_ = 0;
+    double h = length / speed, off = 0;
+    Step step;
+    while (true) {
+        if (++result_.steps > settings_.step_budget) return End::Trapped;
+        step = bent_step(settings_.integrator, field_, state_, force_, h);
+        off = error(step, speed);
+        if (!adaptive) break;
+        // The error of order 4 goes with h^5.
+        const double allowed = tolerance_ / kStepShare;
+        double factor = kMostGrowth;
+        if (!(off <= kMostGrowthError * allowed))
+            factor = std::isfinite(off) ? 0.9 * portable::pow(allowed / off, 0.2) : 0;
+        if (off <= allowed || h * speed <= place) {
+            const double next = h * speed * std::max(factor, 0.2);
+            proposed_ = cut && factor > 1 ? std::max(next, proposed_) : next;
+            break;
+        }
+        h *= std::clamp(factor, 0.1, 0.9);
+    }
+    const dvec3 p = state_.p + step.turn;
+    if (!finite(step.shift) || !finite(p) || !finite(step.force_to) || p == dvec3(0)) return End::Trapped;
+    error_ += off;
+    if (accept(step)) return End::Surface;
+    force_ = step.force_to;
+    // A ray has |p| = n, so one that is followed well slows down before it comes to where there is no index.
+    if ((!adaptive || glm::length(p) < 0.5 * launch_speed_) && !(field_.speed(state_.x) > 0)) return End::NoIndex;
+    return {};
+}
+
+BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
+    launch_speed_ = field_.speed(origin);
+    state_ = {origin, direction, 0};
+    if (!(launch_speed_ > 0)) {
+        result_.end = End::NoIndex;
+        result_.at = state_;
+        return result_;
+    }
+    state_.p = launch_speed_ * direction;
+    force_ = field_.force(state_.x, state_.p);
+    if (bundle_) *bundle_ = launch(*bundle_, state_, force_);
+    std::optional<End> end;
+    while (!end) {
+        const double place = same_place();
+        if (settings_.far - result_.length <= place || settings_.u_end - state_.u <= place) {
+            end = End::Escaped;
+        } else if (result_.steps >= settings_.step_budget) {
+            end = End::Trapped;
+        } else {
+            // Where F is not nothing a medium is, and no need to ask.
+            const double way = force_ == dvec3(0) ? field_.clear_way(state_.x, glm::normalize(state_.p)) : 0;
+            if (way > 0) {
+                if (go_straight(way)) end = End::Surface;
+            } else {
+                end = go_bent();
+            }
+        }
+    }
+    result_.end = *end;
+    if (*end != End::Surface)
+        if (const auto met = search_.finish()) finish(*met);
+    result_.steps = std::min(result_.steps, settings_.step_budget);
+    result_.error_px = std::min(error_ / settings_.pixel, std::numeric_limits<double>::max());
+    result_.at = state_;
+    return result_;
+}
+
+}  // namespace
+
+SurfaceSearch::Deviation chord_deviation(const TraceSettings& settings) {
+    const double half = 0.5 * settings.tolerance_px * settings.pixel;
+    return settings.perspective ? SurfaceSearch::Deviation{half, 0} : SurfaceSearch::Deviation{0, half};
+}
+
+BentHit trace(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
+              const TraceSettings& settings, Bundle* bundle, const StepRecorder& recorder) {
+    switch (settings.integrator) {
+        case Integrator::Layers:
+            return trace_layers(field, geometry, origin, direction, settings, recorder);
+        case Integrator::Mirror:
+            return trace_mirror(field, geometry, origin, direction, settings, recorder);
+        case Integrator::FirstOrder:
+        case Integrator::SecondOrder:
+            return trace_perturbed(field, geometry, origin, direction, settings, recorder);
+        default:
+            return Tracer(field, geometry, settings, bundle, recorder).run(origin, direction);
+    }
+}
+
+}  // namespace eikonal::reference

@@ -1,0 +1,90 @@
+/// Follows one ray of light through a field of refractive index until it meets a surface (paper Eq. 2; PHYSICS 1).
+///
+/// Directions are traced from the camera outwards. Positions in world metres; angles in radians; double throughout. The
+/// ray starts with |dx/du| = FieldInstant::speed at its origin.
+///
+/// Steps: F is evaluated at places never further apart than FieldInstant::longest_step (that is the step itself but for
+/// `adaptive`, twice as long), so that no feature of the index is passed over unseen; they end
+/// where F jumps (way_to_edge) and go on beyond, so that each method keeps its order (integrator.h); outside every
+/// medium the ray is one straight segment (clear_way). `adaptive` further keeps the local error of every step, as the
+/// final displacement it can cause, below 1/kStepShare of the tolerance. For a perspective camera, errors δx at path
+/// length s and δp cause at most (|δx|/s + |δp|/|p|) / pixel; for an orthographic one (|δx| + |δp|/|p| (far - s)) /
+/// pixel. BentHit::error_px is their sum over all steps: it bounds the displacement's error as far as the method's own
+/// estimate does, which for `adaptive` is that of order 4, pessimistic, and except where the field itself spreads rays
+/// apart.
+///
+/// Surfaces: surface_search.h; chords deviate from the curve by less than a quarter of the tolerance for a steady
+/// bend (half of it for any).
+///
+/// Never hangs, and nothing that is not finite leaves: see BentHit::End.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "reference/geometry.h"
+#include "reference/integrator.h"
+#include "reference/ray_differential.h"
+#include "reference/surface_search.h"
+
+namespace eikonal::reference {
+
+/// Of the local error that adaptive allows a step.
+inline constexpr double kStepShare = 8;
+/// The finest tolerance, tolerance_px * pixel, that is of use: tighter ones count as this [rad or m].
+inline constexpr double kFinestTolerance = 1e-13;
+/// What adaptive reaches at its finest in the closed forms of PHYSICS 8 [m, and of p].
+inline constexpr double kClosedFormError = 1e-9;
+
+struct TraceSettings {
+    Integrator integrator = Integrator::Adaptive;
+    double tolerance_px = 0.01;  ///< of the final displacement [pixels] > 0
+    bool perspective = true;
+    double pixel = 1e-3;  ///< size of a pixel > 0: [rad] (perspective) or [m] (orthographic)
+    /// The longest step beside those that the field allows, as du times the speed at the origin, so that a method keeps
+    /// one du (leapfrog is symplectic only then) [m]; 0: the field's alone. For `layers` the thickness of a
+    /// slice; 0: kSlicesPerDropoff in a dropoff.
+    double step = 0;
+    int step_budget = 100000;  ///< attempts of steps > 0
+    double far = 1e6;          ///< a ray that met nothing on this length of path ends [m] > 0
+    double u_end = std::numeric_limits<double>::infinity();  ///< it ends at this parameter
+    double distance = 0;  ///< path from the camera to the ray's origin, for secondary rays [m] >= 0
+    /// For `layers` and `mirror`: baseline_surface() of baselines.h.
+    std::optional<SurfaceSpec> surface;
+};
+
+struct BentHit {
+    enum class End {
+        Surface,  ///< met `surface`
+        Escaped,  ///< went on for `far` metres, or to u_end: `at.p` tells which background it sees
+        Trapped,  ///< the step budget ended it
+        NoIndex   ///< came to where n <= 0
+    };
+    End end = End::Escaped;
+    bool hit = false;  ///< end == Surface
+    Hit surface;
+    RayState at;          ///< the ray's end; at.x is surface.point for a hit
+    double length = 0;    ///< of path from the origin [m]
+    int steps = 0;        ///< attempted
+    double error_px = 0;  ///< estimate, see above [pixels]
+};
+
+/// Called with every step that the ray takes. Those after its end may be among them.
+using StepRecorder = std::function<void(const Step&)>;
+
+/// geometry may be null: nothing is met. direction: unit. bundle, if given, comes as its pixels leave the origin (x
+/// change of the origin, p of the unit direction) and is left as it arrives at the end, not yet moved onto the surface
+/// (on_surface). Only the four true integrators follow it.
+BentHit trace(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
+              const TraceSettings& settings, Bundle* bundle = nullptr, const StepRecorder& recorder = {});
+
+/// How far chords may leave the curve.
+SurfaceSearch::Deviation chord_deviation(const TraceSettings& settings);
+
+/// Whether this integrator follows bundles.
+constexpr bool follows_bundles(Integrator integrator) {
+    return integrator <= Integrator::Euler;
+}
+
+}  // namespace eikonal::reference

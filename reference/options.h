@@ -1,0 +1,52 @@
+/// The command line of eikonal-trace: declared, parsed and checked in one place.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "reference/render.h"
+
+namespace eikonal::reference {
+
+/// What every command takes.
+struct CommonOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> settings;  ///< --set
+    std::optional<std::uint64_t> seed;
+    int threads = 0;  ///< 0: all
+};
+
+struct RenderOptions {
+    CommonOptions common;
+    std::filesystem::path output;
+    RenderSettings render;
+    std::string frames;  ///< empty: the scene's first
+    bool compact = false, overwrite = false, verbose = false;
+};
+
+struct PathOptions {
+    CommonOptions common;
+    std::optional<std::filesystem::path> output;  ///< none: standard output
+    dvec3 origin{0}, direction{0, 0, -1};
+    double length = 0;  ///< of u [m]
+    RaySettings rays;
+    double tolerance = 1e-9;  ///< [m]
+    std::optional<int> frame;
+};
+
+/// What is printed and no more: help, the version.
+struct Information {
+    std::string text;
+};
+
+using Command = std::variant<RenderOptions, PathOptions, Information>;
+
+/// UserError: one line that names the option, the value, what is allowed.
+Command parse_options(int argc, const char* const* argv);
+
+std::string_view name_of(Integrator integrator);
+
+}  // namespace eikonal::reference

@@ -1,0 +1,40 @@
+#include "reference/path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "noise/error.h"
+
+namespace eikonal::reference {
+namespace {
+
+void write_row(std::ostream& stream, const RayState& at) {
+    stream << fmt::format("{},{},{},{},{},{},{}\n", at.u, at.x.x, at.x.y, at.x.z, at.p.x, at.p.y, at.p.z);
+}
+
+}  // namespace
+
+BentHit write_path(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
+                   const TraceSettings& settings, std::ostream& stream, const std::string& name) {
+    std::vector<Step> steps;
+    const BentHit result =
+        trace(field, geometry, origin, direction, settings, nullptr, [&](const Step& step) { steps.push_back(step); });
+    stream << "u,x,y,z,px,py,pz\n";
+    write_row(stream, steps.empty() ? result.at : steps.front().from);
+    for (const Step& step : steps) {
+        // The last one ends early if it meets a surface; steps beyond it do not count.
+        if (step.from.u >= result.at.u) break;
+        const bool last = step.from.u + step.h >= result.at.u;
+        const double end = last ? (result.at.u - step.from.u) / step.h : 1;
+        const double points = std::ceil(std::min(step.bend() / kPathTurn, static_cast<double>(kMostPointsAStep)));
+        for (int i = 1; i < static_cast<int>(points); ++i) write_row(stream, step.at(i / points * end));
+        write_row(stream, last ? result.at : step.to());
+    }
+    if (!stream.flush()) throw FrameError(fmt::format("{}: cannot be written", name));
+    return result;
+}
+
+}  // namespace eikonal::reference

@@ -1,0 +1,28 @@
+/// First and second order: the bent ray as a perturbation of the straight one (paper, Sections 4 and 5; PHYSICS 6).
+///
+/// Along the straight ray x0(u) = q0 + u p0, |p0| the index at the origin, to parameter U at distance D, where it meets
+/// the geometry (without it, or where it meets nothing: at settings.far),
+///
+///     x1(U) = ∫₀^U (U - w) F(x0(w)) dw                                                            Eq. 7, *paper*
+///     x2(U) = ∫₀^U (U - w) [(x1·∇)F + (x1'·∂/∂p)F] dw                                              *added* the last
+///     term
+///
+/// The ray is then redirected, as the paper renders: a straight one from the same origin towards D d + x1⊥(U), or, for
+/// an orthographic camera, a parallel one shifted by x1⊥(U). Second order takes x1⊥ + x2⊥ - x1'⊥ x1∥/|p0|, which is
+/// where the bent ray passes the plane through the straight one's end, across it. Error in the strength of the field:
+/// quadratic, and cubic. The integrals are Simpson's, of order 4 in the step, over the same steps as a bent ray's;
+/// error_px is theirs alone. Nothing is known of what lies beside the straight ray.
+///
+/// Ends, settings as in bent_ray.h; `at.p` is the redirected direction. A straight ray that comes to where n <= 0 ends
+/// there.
+#pragma once
+
+#include "reference/bent_ray.h"
+
+namespace eikonal::reference {
+
+/// settings.integrator: FirstOrder or SecondOrder.
+BentHit trace_perturbed(const FieldInstant& field, const Geometry* geometry, const dvec3& origin,
+                        const dvec3& direction, const TraceSettings& settings, const StepRecorder& recorder);
+
+}  // namespace eikonal::reference

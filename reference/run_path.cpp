@@ -1,0 +1,62 @@
+/// `eikonal-trace path`: one bent ray as numbers.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iostream>
+
+#include "noise/error.h"
+#include "reference/commands.h"
+#include "reference/path.h"
+#include "warp/image/atomic_file.h"
+
+namespace eikonal::reference {
+namespace {
+
+const char* ending(const BentHit& end) {
+    switch (end.end) {
+        case BentHit::End::Surface:
+            return "met a surface";
+        case BentHit::End::Escaped:
+            return "reached its length";
+        case BentHit::End::Trapped:
+            return "was ended by its step budget";
+        case BentHit::End::NoIndex:
+            return "came to where there is no index of refraction";
+    }
+    return "";
+}
+
+}  // namespace
+
+int run(const PathOptions& o) {
+    const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
+    const SceneAir air(scene, o.rays);
+    TraceSettings trace = air.trace_settings(air.path().reference());
+    trace.perspective = false;
+    trace.pixel = 1;
+    trace.tolerance_px = o.tolerance;
+    trace.far = std::numeric_limits<double>::infinity();
+    trace.u_end = o.length;
+    std::optional<Geometry> geometry;
+    if (!scene.objects.empty()) geometry.emplace(scene, o.origin);
+    const FieldInstant field = air.at(o.frame.value_or(scene.time.first_frame));
+    const auto write = [&](std::ostream& stream, const std::string& name) {
+        return write_path(field, geometry ? &*geometry : nullptr, o.origin, o.direction, trace, stream, name);
+    };
+    BentHit end;
+    if (o.output) {
+        AtomicFile file(*o.output);
+        std::ofstream stream(file.temporary());
+        end = write(stream, o.output->string());
+        stream.close();
+        if (!stream) throw FrameError(fmt::format("cannot write '{}'", o.output->string()));
+        file.commit();
+    } else {
+        end = write(std::cout, "standard output");
+        std::cout.flush();
+    }
+    fmt::print(stderr, "the ray {} at u = {:.9g} m after {} steps\n", ending(end), end.at.u, end.steps);
+    return end.end == BentHit::End::Trapped || end.end == BentHit::End::NoIndex ? 1 : 0;
+}
+
+}  // namespace eikonal::reference

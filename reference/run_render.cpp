@@ -1,0 +1,78 @@
+/// `eikonal-trace render`: frames of a scene, with straight or bent rays.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <numeric>
+
+#include "noise/error.h"
+#include "reference/commands.h"
+#include "reference/frame_file.h"
+#include "reference/tile_progress.h"
+#include "warp/image/atomic_file.h"
+#include "warp/image/interrupt.h"
+#include "warp/image/sequence.h"
+
+namespace eikonal::reference {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+FilePattern checked_pattern(const RenderOptions& o, std::size_t frame_count) {
+    const FilePattern pattern = FilePattern::parse(o.output);
+    if (frame_count > 1 && !pattern.is_sequence())
+        throw UserError(fmt::format("--output {}: {} frames need a frame number in the name, e.g. plate.####.exr",
+                                    o.output.string(), frame_count));
+    return pattern;
+}
+
+/// What of a frame its user should know.
+void report(const RenderOptions& o, const RenderedFrame& frame, int number, double seconds) {
+    const auto warn = [&](std::size_t pixels, const char* what) {
+        if (pixels > 0)
+            fmt::print(stderr, "frame {}: warning: {} of {} pixels {}\n", number, pixels, frame.id.size(), what);
+    };
+    warn(frame.trapped(), "hold rays that the step budget ended (id -1, black); --step-budget raises it");
+    warn(frame.without_index(), "hold rays that came to where n <= 0 (id -2, black); lower [optics] exaggeration");
+    if (!frame.magnification.empty())
+        fmt::print(stderr, "frame {}: {} of {} pixels are folded (negative magnification)\n", number, frame.folded(),
+                   frame.id.size());
+    if (!o.verbose) return;
+    const double area = static_cast<double>(frame.depth.size());
+    const auto mean = [&](const std::vector<float>& values) {
+        return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / area;
+    };
+    fmt::print(stderr, "frame {}: {:.2f} s, {:.1f} steps a ray, estimated error {:.2g} px on average\n", number,
+               seconds, mean(frame.steps), mean(frame.error));
+}
+
+}  // namespace
+
+int run(const RenderOptions& o) {
+    const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
+    const std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
+    const FilePattern pattern = checked_pattern(o, frames.size());
+    const Renderer renderer(scene, o.render);
+    for (const int frame : frames) {
+        const std::filesystem::path file = pattern.at(frame);
+        std::error_code ignored;
+        if (!o.overwrite && std::filesystem::exists(file, ignored)) {
+            fmt::print(stderr, "frame {}: kept {} (--overwrite renders it again)\n", frame, file.string());
+            continue;
+        }
+        try {
+            const AtomicFile place(file);  // fails now rather than after the work if the file cannot be put there
+            const auto start = Clock::now();
+            TileProgress progress(fmt::format("frame {}", frame), renderer.tile_count());
+            const RenderedFrame rendered = renderer.render(frame, [&] { progress.tile_done(); });
+            write_frame(file, rendered, o.compact ? Storage::Compact : Storage::Exact);
+            report(o, rendered, frame, std::chrono::duration<double>(Clock::now() - start).count());
+        } catch (const FrameError& error) {
+            throw FrameError(fmt::format("frame {}: {}", frame, error.what()));
+        }
+        fmt::print(stderr, "frame {}: wrote {}\n", frame, file.string());
+    }
+    return 0;
+}
+
+}  // namespace eikonal::reference

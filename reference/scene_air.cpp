@@ -1,0 +1,57 @@
+#include "reference/scene_air.h"
+
+#include <algorithm>
+
+#include "noise/memory.h"
+#include "warp/image/depth_map.h"
+#include "warp/scene/screen_view.h"
+
+namespace eikonal::reference {
+namespace {
+
+/// Length of path after which a ray has met nothing [m], if the scene states no farther.
+constexpr double kFarthestSight = 1e6;
+
+double far_of(const PlateSpec& plate) {
+    return plate.far.value_or(plate.distance.value_or(kDefaultFar));
+}
+
+Field make_field(const Scene& scene, const CameraPath& path, int width, int height) {
+    const Camera camera = path.reference();
+    const ScreenFrame frame{camera.position, camera.right, camera.up, camera.forward,
+                            screen_view(camera, width, height, scene.optics.aperture, far_of(scene.plate),
+                                        scene.time.fps.value_or(kDefaultFps))};
+    return Field(scene.media, scene.optics, frame, memory_limit());
+}
+
+}  // namespace
+
+SceneAir::SceneAir(const Scene& scene, const RaySettings& settings)
+    : scene_(scene),
+      settings_(settings),
+      width_(scene.camera.resolution.value_or(kDefaultResolution)[0]),
+      height_(scene.camera.resolution.value_or(kDefaultResolution)[1]),
+      far_(far_of(scene.plate)),
+      path_(scene.camera, width_, height_),
+      field_(make_field(scene, path_, width_, height_)) {
+    baseline_surface(settings.integrator, scene.media);  // refuses what the integrator cannot do before any frame
+}
+
+double SceneAir::time(int frame) const {
+    return (static_cast<double>(frame) - scene_.time.first_frame) / scene_.time.fps.value_or(kDefaultFps);
+}
+
+TraceSettings SceneAir::trace_settings(const Camera& camera) const {
+    TraceSettings trace;
+    trace.integrator = settings_.integrator;
+    trace.tolerance_px = settings_.tolerance_px;
+    trace.perspective = camera.projection == Projection::Perspective;
+    trace.pixel = 1 / camera.f_px;
+    trace.step = settings_.step;
+    trace.step_budget = settings_.step_budget;
+    trace.far = std::max(kFarthestSight, 10 * far_);
+    trace.surface = baseline_surface(settings_.integrator, scene_.media);
+    return trace;
+}
+
+}  // namespace eikonal::reference

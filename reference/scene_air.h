@@ -1,0 +1,44 @@
+/// The air of a scene at any frame, as the tracer's rays need it: its field of index and how rays are to be followed.
+///
+/// Frame F is at t = (F - first_frame)/fps; thin screens stand before the camera of the shot's first key, out to the
+/// plate's far distance, exactly as `eikonal warp` places them for the same scene.
+#pragma once
+
+#include "reference/baselines.h"
+#include "warp/scene/camera.h"
+
+namespace eikonal::reference {
+
+/// How rays are followed.
+struct RaySettings {
+    Integrator integrator = Integrator::Adaptive;
+    double tolerance_px = 0.01;  ///< of the final displacement [px] > 0
+    double step = 0;             ///< see TraceSettings
+    int step_budget = 100000;    ///< of every ray
+};
+
+/// Immutable, thread-safe.
+class SceneAir {
+  public:
+    /// Keeps a reference to the scene. UserError: noise/field.h, camera.h, and media that the integrator cannot follow.
+    SceneAir(const Scene& scene, const RaySettings& settings);
+
+    FieldInstant at(int frame) const { return field_.at(time(frame)); }
+    /// Seconds since the scene's first frame.
+    double time(int frame) const;
+    TraceSettings trace_settings(const Camera& camera) const;
+
+    const CameraPath& path() const { return path_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+  private:
+    const Scene& scene_;
+    RaySettings settings_;
+    int width_, height_;
+    double far_;
+    CameraPath path_;
+    Field field_;
+};
+
+}  // namespace eikonal::reference

@@ -1,0 +1,30 @@
+/// Progress of one frame: a line with the time left, rewritten on a terminal, silent elsewhere.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+
+namespace eikonal::reference {
+
+class TileProgress {
+  public:
+    TileProgress(std::string what, int tiles);
+    /// Clears its line.
+    ~TileProgress();
+    TileProgress(const TileProgress&) = delete;
+    TileProgress& operator=(const TileProgress&) = delete;
+
+    /// One more tile is done. Thread-safe. FrameError: the user has interrupted the run.
+    void tile_done();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    std::string what_;
+    int tiles_, done_ = 0;
+    bool shown_, drawn_ = false;
+    Clock::time_point start_, last_;
+    std::mutex mutex_;
+};
+
+}  // namespace eikonal::reference

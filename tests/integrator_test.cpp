@@ -1,0 +1,817 @@
+/// Bent rays against closed forms (PHYSICS 8) and against each other: accuracy and order of every integrator, edges,
+/// surfaces met by curves, mirages, neighbours of rays, and what must never hang or be passed over.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "noise/error.h"
+#include "noise/refractivity.h"
+#include "reference/baselines.h"
+#include "reference/bent_ray.h"
+#include "reference/path.h"
+#include "reference/perturbation.h"
+
+namespace eikonal::reference {
+namespace {
+
+using std::numbers::pi;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr auto kTrueIntegrators = {Integrator::Adaptive, Integrator::Rk4, Integrator::Leapfrog, Integrator::Euler};
+
+/// A scene of media at t = 0.
+struct Air {
+    Field field;
+    FieldInstant now;
+    explicit Air(const std::vector<MediumSpec>& media, const OpticsSpec& optics = {})
+        : field(media, optics, {}, std::uint64_t{1} << 30), now(field.at(0)) {}
+};
+
+ProfileSpec profile(ProfileKind kind) {
+    ProfileSpec spec;
+    spec.profile = kind;
+    return spec;
+}
+
+ObjectSpec plane(dvec3 origin, dvec3 normal) {
+    ObjectSpec object;
+    object.shape = ObjectShape::Plane;
+    object.origin = origin;
+    object.normal = normal;
+    return object;
+}
+
+ObjectSpec sphere(dvec3 center, double radius) {
+    ObjectSpec object;
+    object.shape = ObjectShape::Sphere;
+    object.center = center;
+    object.radius = radius;
+    return object;
+}
+
+ObjectSpec quad(dvec3 center, dvec3 normal, double side) {
+    ObjectSpec object;
+    object.shape = ObjectShape::Quad;
+    object.origin = center;
+    object.normal = normal;
+    object.size = {side, side};
+    return object;
+}
+
+std::unique_ptr<Geometry> geometry(std::vector<ObjectSpec> objects) {
+    Scene scene;
+    scene.objects = std::move(objects);
+    return std::make_unique<Geometry>(scene, dvec3(0));
+}
+
+TraceSettings finest() {
+    TraceSettings settings;
+    settings.tolerance_px = 1e-12;
+    settings.pixel = 1;
+    return settings;
+}
+
+/// What tracing with the tolerance of a usual render asks for.
+TraceSettings usual() {
+    TraceSettings settings;
+    settings.pixel = 4e-4;
+    return settings;
+}
+
+TraceSettings fixed(Integrator integrator, double step) {
+    TraceSettings settings = finest();
+    settings.integrator = integrator;
+    settings.step = step;
+    settings.tolerance_px = 1e3;
+    return settings;
+}
+
+RayState end_of(const Air& air, dvec3 origin, dvec3 direction, TraceSettings settings, double u) {
+    settings.u_end = u;
+    const BentHit result = trace(air.now, nullptr, origin, direction, settings);
+    EXPECT_EQ(result.end, BentHit::End::Escaped);
+    EXPECT_NEAR(result.at.u, u, 1e-11);
+    return result.at;
+}
+
+double distance(const RayState& at, dvec3 x, dvec3 p) {
+    return std::max(glm::length(at.x - x), glm::length(at.p - p));
+}
+
+// ---- Closed forms, at the finest tolerance
+
+TEST(ClosedForm, LuneburgFocusesOnItsFarSide) {
+    const Air air({profile(ProfileKind::Luneburg)});
+    const double y = 0.5, x = -std::sqrt(0.75);
+    // x'' = -x inside: cos and sin of u. All rays along +x meet at (1, 0) a quarter turn on, at any height.
+    const RayState at = end_of(air, {x, y, 0}, {1, 0, 0}, finest(), pi / 2);
+    EXPECT_LE(distance(at, {1, 0, 0}, {-x, -y, 0}), kClosedFormError);
+    // From outside, and beyond: straight on from the focus.
+    const double way = x + 3;
+    const RayState beyond = end_of(air, {-3, y, 0}, {1, 0, 0}, finest(), way + pi / 2 + 2);
+    EXPECT_LE(distance(beyond, dvec3(1, 0, 0) + 2.0 * dvec3(-x, -y, 0), {-x, -y, 0}), kClosedFormError);
+}
+
+TEST(ClosedForm, FishEyeRaysAreCircles) {
+    const double n0 = 2;
+    ProfileSpec spec = profile(ProfileKind::FishEye);
+    spec.n0 = n0;
+    const Air air({spec});
+    // (1, 0) at 120 degrees: a circle through (±1, 0) with centre (0, -1/√3·…): tangent at the start is perpendicular
+    // to the radius, so the centre is (0, c) with (1, -c)·(-1/2, √3/2) = 0, c = -1/√3.
+    const dvec3 start{1, 0, 0}, d{-0.5, std::sqrt(0.75), 0}, center{0, -1 / std::sqrt(3.0), 0};
+    const double radius = std::sqrt(4.0 / 3);
+    const auto wall = geometry({plane({-1, 0, 0}, {1, 0, 0})});
+    double worst = 0;
+    const BentHit hit = trace(air.now, wall.get(), start, d, finest(), nullptr, [&](const Step& step) {
+        for (const double theta : {0.0, 0.3, 0.5, 0.8}) {
+            const RayState at = step.at(theta);
+            const double n = n0 / (1 + glm::dot(at.x, at.x));
+            worst = std::max(worst, std::abs(glm::length(at.x - center) - radius));
+            worst = std::max(worst, std::abs(glm::dot(at.p, at.p) - n * n));
+        }
+    });
+    ASSERT_TRUE(hit.hit);
+    EXPECT_LE(worst, kClosedFormError);
+    EXPECT_LE(glm::length(hit.at.x - dvec3(-1, 0, 0)), kClosedFormError);
+    EXPECT_LE(glm::length(hit.at.p - dvec3(-0.5, -std::sqrt(0.75), 0)), kClosedFormError);
+    EXPECT_NEAR(hit.length, 2 * pi / 3 * radius, kClosedFormError);
+}
+
+TEST(ClosedForm, LinearSquaredIsAParabola) {
+    ProfileSpec spec = profile(ProfileKind::LinearSquared);
+    spec.axis = {0, 0, 1};
+    spec.slope = 1;
+    const Air air({spec});
+    // n² = 1 + z, from the origin along x: x = u, z = u²/4 = x²/4.
+    for (const double u : {0.3, 1.0, 4.0})
+        EXPECT_LE(distance(end_of(air, {0, 0, 0}, {1, 0, 0}, finest(), u), {u, 0, u * u / 4}, {1, 0, u / 2}),
+                  kClosedFormError);
+    // Against it: down to where it turns back at z = -sin², and up again.
+    const double s = 0.6, c = 0.8;
+    EXPECT_LE(distance(end_of(air, {0, 0, 0}, {c, 0, -s}, finest(), 4 * s), {4 * s * c, 0, 0}, {c, 0, s}),
+              kClosedFormError);
+}
+
+TEST(ClosedForm, WeakGradientOverHalfAKilometre) {
+    ProfileSpec spec = profile(ProfileKind::Linear);
+    spec.slope = 1e-6;
+    const Air air({spec});
+    const auto wall = geometry({plane({500, 0, 0}, {-1, 0, 0})});
+    const BentHit hit = trace(air.now, wall.get(), {0, 0, 0}, {1, 0, 0}, finest());
+    ASSERT_TRUE(hit.hit);
+    // n = 1 + gs in u: s'' = g(1 + gs), so s = (cosh gu - 1)/g and x = u.
+    EXPECT_NEAR(hit.at.x.y, (std::cosh(5e-4) - 1) / 1e-6, kClosedFormError);
+    EXPECT_NEAR(hit.at.x.y, 0.125, 1e-6);
+    EXPECT_NEAR(hit.at.p.y / hit.at.p.x, 500e-6, 1e-9);
+    EXPECT_NEAR(hit.at.x.y / 500, 250e-6, 1e-9);
+    EXPECT_LE(hit.steps, 200);
+    // Every method, at its own step: the bend is constant to 5e-4.
+    for (const Integrator integrator :
+         {Integrator::Rk4, Integrator::Leapfrog, Integrator::FirstOrder, Integrator::SecondOrder}) {
+        TraceSettings settings = fixed(integrator, 10);
+        const BentHit other = trace(air.now, wall.get(), {0, 0, 0}, {1, 0, 0}, settings);
+        ASSERT_TRUE(other.hit);
+        EXPECT_NEAR(other.at.x.y, 0.125, 1e-6) << static_cast<int>(integrator);
+    }
+}
+
+TEST(ClosedForm, RodAndSechArePeriodic) {
+    ProfileSpec rod = profile(ProfileKind::Rod);
+    rod.axis = {1, 0, 0};
+    rod.n0 = 1.5;
+    rod.g = 0.5;
+    const Air air({rod});
+    // ρ'' = -n0² g² ρ in u, and the part of p along the axis stays.
+    const double n = 1.5 * std::sqrt(1 - 0.25 * 0.25 * 0.25 * 4);
+    const dvec3 start{0, 0.5, 0};
+    const double period = 2 * pi / (1.5 * 0.5);
+    EXPECT_LE(distance(end_of(air, start, {1, 0, 0}, finest(), period), {n * period, 0.5, 0}, {n, 0, 0}),
+              kClosedFormError);
+
+    ProfileSpec sech = profile(ProfileKind::Sech);
+    sech.axis = {1, 0, 0};
+    sech.g = 0.8;
+    const Air other({sech});
+    // sinh(gρ) = sinh(gρ0) cos(gz): every ray in a plane through the axis meets it a quarter period on.
+    for (const double y : {0.3, 1.0}) {
+        const auto wall = geometry({plane({0.5 * pi / 0.8, 0, 0}, {-1, 0, 0})});
+        const BentHit hit = trace(other.now, wall.get(), {0, y, 0}, {1, 0, 0}, finest());
+        ASSERT_TRUE(hit.hit);
+        EXPECT_NEAR(hit.at.x.y, 0, kClosedFormError);
+    }
+}
+
+TEST(ClosedForm, LayeredMediaKeepSnellsConstant) {
+    ProfileSpec spec = profile(ProfileKind::Exponential);
+    spec.slope = 0.3;
+    const Air air({spec});
+    double worst = 0;
+    TraceSettings settings = finest();
+    settings.far = 20;
+    const dvec3 d = glm::normalize(dvec3(1, -0.7, 0.2));
+    trace(air.now, nullptr, {0, 1, 0}, d, settings, nullptr, [&](const Step& step) {
+        const RayState at = step.to();
+        const double n = std::exp(0.3 * at.x.y), n1 = std::exp(0.3);
+        worst = std::max(worst, std::abs(glm::length(at.p) / n - 1));
+        worst = std::max(worst, glm::length(dvec3(at.p.x - n1 * d.x, 0, at.p.z - n1 * d.z)));
+    });
+    EXPECT_LE(worst, kClosedFormError);
+}
+
+TEST(ClosedForm, PaperConventionBendsHalfAsMuch) {
+    OpticsSpec optics;
+    optics.ray_equation = RayEquation::Paper;
+    ProfileSpec spec = profile(ProfileKind::Linear);
+    spec.slope = 0.01;
+    const Air air({spec}, optics);
+    // F = g/2 constant.
+    EXPECT_LE(distance(end_of(air, {0, 0, 0}, {1, 0, 0}, finest(), 10), {10, 0.25, 0}, {1, 0.05, 0}), kClosedFormError);
+}
+
+// ---- Order and tolerance
+
+double luneburg_error(const TraceSettings& settings) {
+    static const Air air({profile(ProfileKind::Luneburg)});
+    const double x = -std::sqrt(0.75);
+    return distance(end_of(air, {-1.5, 0.5, 0}, {1, 0, 0}, settings, x + 1.5 + pi / 2 + 0.3),
+                    dvec3(1, 0, 0) + 0.3 * dvec3(-x, -0.5, 0), {-x, -0.5, 0});
+}
+
+TEST(Order, ShowsWhenStepsAreHalved) {
+    // Through Luneburg's sphere, with two jumps of F on the way, which must not spoil it.
+    const std::pair<Integrator, double> methods[] = {
+        {Integrator::Adaptive, 5}, {Integrator::Rk4, 4}, {Integrator::Leapfrog, 2}, {Integrator::Euler, 1}};
+    for (const auto& [integrator, order] : methods) {
+        // The highest order comes down to rounding soon.
+        const int halvings = order == 5 ? 1 : 3;
+        const double first = luneburg_error(fixed(integrator, 0.1));
+        const double last = luneburg_error(fixed(integrator, 0.1 / (1 << halvings)));
+        EXPECT_NEAR(std::log2(first / last) / halvings, order, 0.3) << static_cast<int>(integrator);
+    }
+}
+
+TEST(Order, LeapfrogIsSymplectic) {
+    // |p|² - n² oscillates but does not drift: a hundred periods of the rod are as good as one.
+    ProfileSpec rod = profile(ProfileKind::Rod);
+    rod.axis = {1, 0, 0};
+    const Air air({rod});
+    for (const Integrator integrator : {Integrator::Leapfrog, Integrator::Rk4}) {
+        double early = 0, late = 0;
+        TraceSettings settings = fixed(integrator, 0.1);
+        settings.far = kNever;
+        settings.u_end = 200 * pi;
+        trace(air.now, nullptr, {0, 0.5, 0}, {1, 0, 0}, settings, nullptr, [&](const Step& step) {
+            const double off = std::abs(glm::dot(step.from.p, step.from.p) - 1 + step.from.x.y * step.from.x.y);
+            (step.from.u < 2 * pi ? early : late) = std::max(step.from.u < 2 * pi ? early : late, off);
+        });
+        if (integrator == Integrator::Leapfrog)
+            EXPECT_LT(late, 1.01 * early);
+        else
+            EXPECT_GT(late, 10 * early);
+    }
+}
+
+TEST(Tolerance, BoundsTheErrorAndIsReported) {
+    const Air air({profile(ProfileKind::FishEye)});
+    const auto wall = geometry({plane({-1, 0, 0}, {1, 0, 0})});
+    const dvec3 d{-0.5, std::sqrt(0.75), 0};
+    int steps = 0;
+    for (const double tolerance : {1.0, 0.1, 1e-2, 1e-4, 1e-6}) {
+        TraceSettings settings = usual();
+        settings.tolerance_px = tolerance;
+        const BentHit hit = trace(air.now, wall.get(), {1, 0, 0}, d, settings);
+        ASSERT_TRUE(hit.hit);
+        const double error = glm::length(hit.at.x - dvec3(-1, 0, 0)) / hit.length / settings.pixel;
+        EXPECT_LE(error, tolerance);
+        EXPECT_LE(error, hit.error_px);
+        EXPECT_LE(hit.error_px, 10 * tolerance);
+        EXPECT_GE(hit.steps, steps);
+        steps = hit.steps;
+    }
+    // The same for parallel rays, in metres.
+    TraceSettings settings = usual();
+    settings.perspective = false;
+    settings.pixel = 0.01;
+    settings.far = 4;
+    const BentHit hit = trace(air.now, wall.get(), {1, 0, 0}, d, settings);
+    EXPECT_LE(glm::length(hit.at.x - dvec3(-1, 0, 0)), settings.tolerance_px * settings.pixel);
+}
+
+TEST(Tolerance, FixedStepsEstimateTheirErrors) {
+    const Air air({profile(ProfileKind::FishEye)});
+    const auto wall = geometry({plane({-1, 0, 0}, {1, 0, 0})});
+    const dvec3 d{-0.5, std::sqrt(0.75), 0};
+    for (const Integrator integrator : {Integrator::Rk4, Integrator::Leapfrog, Integrator::Euler}) {
+        const BentHit hit = trace(air.now, wall.get(), {1, 0, 0}, d, fixed(integrator, 0.02));
+        ASSERT_TRUE(hit.hit);
+        const double error = glm::length(hit.at.x - dvec3(-1, 0, 0)) / hit.length;
+        EXPECT_LE(error, 3 * hit.error_px) << static_cast<int>(integrator);
+        EXPECT_GE(error, 0.02 * hit.error_px) << static_cast<int>(integrator);
+    }
+}
+
+// ---- Surfaces met by curves
+
+TEST(Surfaces, AreMetOnTheCurve) {
+    ProfileSpec spec = profile(ProfileKind::LinearSquared);
+    spec.axis = {0, 0, 1};
+    spec.slope = 1;
+    const Air air({spec});
+    // Parabola z = x²/4 against a plane, a quad (as triangles) and a sphere, whatever the tolerance.
+    const double x = 3, z = x * x / 4;
+    const dvec3 tilted = glm::normalize(dvec3(-0.4, 0.1, -1));
+    const dvec3 tangent = glm::normalize(dvec3(1, 0, x / 2)),
+                center = dvec3(x, 0, z) + 0.5 * glm::normalize(tangent + dvec3(0.3, 0, 0.3));
+    for (const double tolerance : {1e-9, 0.01, 10.0}) {
+        TraceSettings settings = usual();
+        settings.tolerance_px = tolerance;
+        for (const ObjectSpec& object : {plane({x, 0, z}, tilted), quad({x, 0, z}, tilted, 0.5), sphere(center, 0.5)}) {
+            const auto wall = geometry({object});
+            const BentHit hit = trace(air.now, wall.get(), {0, 0, 0}, {1, 0, 0}, settings);
+            ASSERT_TRUE(hit.hit) << tolerance;
+            // This curve is a polynomial: no method errs in it.
+            EXPECT_LE(glm::length(hit.at.x - dvec3(x, 0, z)), kClosedFormError) << tolerance;
+            EXPECT_EQ(hit.at.x, hit.surface.point);
+            EXPECT_NEAR(hit.at.u, x, kClosedFormError);
+            EXPECT_NEAR(hit.at.p.z, x / 2, kClosedFormError);
+            EXPECT_LT(glm::dot(hit.surface.normal, hit.at.p), 0);
+            EXPECT_NEAR(hit.length, 0.5 * (x * std::sqrt(1 + x * x / 4) + 2 * std::asinh(x / 2)), 1e-5);
+        }
+    }
+}
+
+TEST(Surfaces, GrazedAreMetOrPassed) {
+    ProfileSpec spec = profile(ProfileKind::LinearSquared);
+    spec.axis = {0, 0, 1};
+    spec.slope = 1;
+    const Air air({spec});
+    // The ray turns back at z = -s² above a floor, or below its level.
+    const double s = 0.1, c = std::sqrt(1 - s * s);
+    TraceSettings settings = usual();
+    settings.far = 3;
+    for (const double gap : {1e-3, 1e-6, 1e-9, -1e-6, -1e-3}) {
+        const auto floor = geometry({plane({0, 0, -s * s - gap}, {0, 0, 1})});
+        const BentHit hit = trace(air.now, floor.get(), {0, 0, 0}, {c, 0, -s}, settings);
+        EXPECT_EQ(hit.hit, gap < 0) << gap;
+        if (gap < 0) {
+            EXPECT_NEAR(hit.at.u, 2 * s - 2 * std::sqrt(-gap), 1e-8) << gap;
+        }
+    }
+    // A ball in the curve's bow: its chords cut it, the curve does not; and one that it just touches.
+    for (const double gap : {1e-4, -1e-4}) {
+        const dvec3 lowest{2 * s * c, 0, -s * s};
+        const auto ball = geometry({sphere(lowest + dvec3(0, 0, 0.01 + gap), 0.01)});
+        settings.tolerance_px = 200;  // coarse chords
+        const BentHit hit = trace(air.now, ball.get(), {0, 0, 0}, {c, 0, -s}, settings);
+        EXPECT_EQ(hit.hit, gap < 0) << gap;
+    }
+}
+
+TEST(Surfaces, BehindTheTurnAreMetOnTheWayBack) {
+    ProfileSpec spec = profile(ProfileKind::LinearSquared);
+    spec.slope = 1;
+    const Air air({spec});
+    // Up against the gradient and down again, past where it started.
+    const dvec3 d = glm::normalize(dvec3(0.01, -1, 0));
+    const auto ceiling = geometry({plane({0, 2, 0}, {0, -1, 0})});
+    const BentHit hit = trace(air.now, ceiling.get(), {0, 0, 0}, d, usual());
+    ASSERT_TRUE(hit.hit);
+    // y = d.y u + u²/4
+    EXPECT_NEAR(hit.at.u, -2 * d.y + 2 * std::sqrt(d.y * d.y + 2), 1e-8);
+}
+
+TEST(Surfaces, CostFewSegmentsInWeakAir) {
+    // Straight where there is no medium: one step to any distance.
+    const Air none({});
+    const auto wall = geometry({plane({1e5, 0, 0}, {-1, 0, 0})});
+    const BentHit hit = trace(none.now, wall.get(), {0, 0, 0}, glm::normalize(dvec3(1, 0.1, 0)), usual());
+    ASSERT_TRUE(hit.hit);
+    EXPECT_EQ(hit.steps, 1);
+    EXPECT_NEAR(hit.at.x.y, 1e4, 1e-8);
+    const BentHit gone = trace(none.now, wall.get(), {0, 0, 0}, {-1, 0, 0}, usual());
+    EXPECT_EQ(gone.end, BentHit::End::Escaped);
+    EXPECT_EQ(gone.at.x, dvec3(-1e6, 0, 0));
+}
+
+// ---- Mirages
+
+SurfaceSpec road(double dropoff, double temperature = 305) {
+    SurfaceSpec spec;
+    spec.surface_temperature = temperature;
+    spec.dropoff = dropoff;
+    return spec;
+}
+
+OpticsSpec at_zero() {
+    OpticsSpec optics;
+    optics.ambient_temperature = 273;
+    return optics;
+}
+
+TEST(Mirage, CriticalAngle) {
+    const Air air({road(0.01)}, at_zero());
+    const auto floor = geometry({plane({0, 0, 0}, {0, 1, 0})});
+    const IndexLaw law = index_law(at_zero());
+    const double B = -law.above_ambient(305);
+    double low = 0.5 * std::sqrt(2 * B), high = 2 * std::sqrt(2 * B);
+    for (int i = 0; i < 40; ++i) {
+        const double angle = 0.5 * (low + high);
+        const BentHit hit = trace(air.now, floor.get(), {0, 1.5, 0}, {std::cos(angle), -std::sin(angle), 0}, finest());
+        (hit.hit ? high : low) = angle;
+    }
+    EXPECT_NEAR(low / std::sqrt(2 * B), 1, 1e-3);
+    // Exactly: n_a cosθ = n_S.
+    EXPECT_NEAR(std::cos(low), 1 - B / (1 + law.ambient()), 1e-9);
+}
+
+/// Height of the ray 20 m beyond its lowest point, and that point, for a ray at half the critical angle.
+struct Bounce {
+    RayState lowest, after;
+};
+Bounce bounce(const Air& air, double start_height, double angle) {
+    Bounce result;
+    TraceSettings settings = finest();
+    double lowest = kNever;
+    settings.far = 2 * start_height / angle * 1.5 + 40;
+    trace(air.now, nullptr, {0, start_height, 0}, {std::cos(angle), -std::sin(angle), 0}, settings, nullptr,
+          [&](const Step& step) {
+              for (double theta = 0; theta < 1; theta += 1.0 / 64)
+                  if (step.position(theta).y < lowest) result.lowest = step.at(theta), lowest = result.lowest.x.y;
+              result.after = step.to();
+          });
+    return result;
+}
+
+TEST(Mirage, SmallDropoffIsAMirrorLargeAParabola) {
+    const double B = -index_law(at_zero()).above_ambient(305), angle = 0.5 * std::sqrt(2 * B);
+    {  // Fig. 2, mirror: the outgoing leg continues the mirrored incoming one to a few dropoffs.
+        const Air air({road(1e-4)}, at_zero());
+        const Bounce b = bounce(air, 0.1, angle);
+        EXPECT_NEAR(b.after.p.y / b.after.p.x, std::tan(angle), 1e-9);
+        const double mirrored = std::tan(angle) * b.after.x.x - 0.1;
+        EXPECT_NEAR(b.after.x.y, mirrored, 5e-4);
+        TraceSettings settings = usual();
+        settings.integrator = Integrator::Mirror;
+        settings.surface = road(1e-4);
+        settings.far = glm::length(b.after.x);
+        const BentHit hit = trace(air.now, nullptr, {0, 0.1, 0}, {std::cos(angle), -std::sin(angle), 0}, settings);
+        EXPECT_NEAR(hit.at.p.y / hit.at.p.x, std::tan(angle), 1e-12);
+        EXPECT_NEAR(std::tan(angle) * hit.at.x.x - 0.1, hit.at.x.y, 1e-4);
+    }
+    {  // Fig. 2, parabola: started within a large layer, where the gradient hardly changes.
+        const Air air({road(10)}, at_zero());
+        const double F = glm::length(air.now.force({0, 0.02, 0}, {1, 0, 0})), slope = std::sqrt(2 * F * 0.01);
+        const Bounce b = bounce(air, 0.02, slope);
+        EXPECT_NEAR(b.lowest.x.y, 0.01, 1e-4);
+        const double x = 4;
+        TraceSettings settings = finest();
+        settings.u_end = x;
+        const RayState at = trace(air.now, nullptr, {0, 0.02, 0}, {std::cos(slope), -std::sin(slope), 0}, settings).at;
+        EXPECT_NEAR(at.x.y, 0.02 - slope * x + F * x * x / 2, 2e-3 * 0.01);
+    }
+}
+
+TEST(Mirage, LayersConvergeToTheBentRay) {
+    const Air air({road(0.01)}, at_zero());
+    const auto wall = geometry({plane({60, 0, 0}, {-1, 0, 0})});
+    const double B = -index_law(at_zero()).above_ambient(305);
+    const auto height = [&](Integrator integrator, double step, double angle) {
+        TraceSettings settings = finest();
+        settings.integrator = integrator;
+        settings.surface = baseline_surface(integrator, {road(0.01)});
+        settings.step = step;
+        settings.tolerance_px = 1e-6;
+        const BentHit hit = trace(air.now, wall.get(), {0, 0.2, 0}, {std::cos(angle), -std::sin(angle), 0}, settings);
+        EXPECT_TRUE(hit.hit);
+        return hit.at.x.y;
+    };
+    const double turning = 0.7 * std::sqrt(2 * B);
+    const double truth = height(Integrator::Adaptive, 0, turning);
+    double before = kNever;
+    for (const double slice : {2e-3, 2e-4, 2e-5}) {
+        const double off = std::abs(height(Integrator::Layers, slice, turning) - truth);
+        EXPECT_LT(off, before);
+        before = off;
+    }
+    EXPECT_LT(before, 2e-3);
+    // A ray through all slices: order 2.
+    const auto crossing = [&](Integrator integrator, double step) {
+        TraceSettings settings = finest();
+        settings.integrator = integrator;
+        settings.surface = road(0.01);
+        settings.step = step;
+        const double angle = 1.5 * std::sqrt(2 * B);
+        const auto low = geometry({plane({0, 0, 0}, {0, 1, 0})});
+        return trace(air.now, low.get(), {0, 0.4, 0}, {std::cos(angle), -std::sin(angle), 0}, settings).at.x.x;
+    };
+    const double straight = crossing(Integrator::Adaptive, 0);
+    const double coarse = std::abs(crossing(Integrator::Layers, 2e-3) - straight);
+    const double fine = std::abs(crossing(Integrator::Layers, 5e-4) - straight);
+    EXPECT_NEAR(std::log2(coarse / fine) / 2, 2, 0.2);
+}
+
+TEST(Mirage, MirrorReflectsBelowTheCriticalAngleOnly) {
+    const Air air({road(0.01)}, at_zero());
+    const auto floor = geometry({plane({0, 0, 0}, {0, 1, 0}), plane({300, 0, 0}, {-1, 0, 0})});
+    const double critical = std::sqrt(-2 * index_law(at_zero()).above_ambient(305));
+    TraceSettings settings = usual();
+    settings.integrator = Integrator::Mirror;
+    settings.surface = road(0.01);
+    for (const double part : {0.99, 1.01}) {
+        const double angle = part * critical;
+        const BentHit hit = trace(air.now, floor.get(), {0, 1, 0}, {std::cos(angle), -std::sin(angle), 0}, settings);
+        ASSERT_TRUE(hit.hit);
+        EXPECT_EQ(hit.surface.object, part < 1 ? 1 : 0);
+        if (part < 1) {
+            EXPECT_NEAR(hit.at.x.y, 300 * std::tan(angle) - 1, 1e-2);
+        }
+    }
+}
+
+TEST(Mirage, BaselinesRefuseOtherScenes) {
+    for (const Integrator integrator : {Integrator::Layers, Integrator::Mirror}) {
+        EXPECT_THROW(baseline_surface(integrator, {}), UserError);
+        EXPECT_THROW(baseline_surface(integrator, {BlobsSpec{}}), UserError);
+        EXPECT_THROW(baseline_surface(integrator, {road(0.01), road(0.01)}), UserError);
+        EXPECT_TRUE(baseline_surface(integrator, {road(0.01)}));
+    }
+    EXPECT_FALSE(baseline_surface(Integrator::Adaptive, {}));
+}
+
+// ---- Perturbation
+
+BlobsSpec one_blob(dvec3 center, double sigma, double temperature = 1000) {
+    BlobsSpec spec;
+    spec.blobs = {{center, sigma, temperature}};
+    return spec;
+}
+
+TEST(Perturbation, ErrsByTheNextPowerOfTheStrength) {
+    const dvec3 d = glm::normalize(dvec3(1, 0.004, 0.003));
+    const auto wall = geometry({plane(10.0 * d, -d)});
+    const auto error = [&](Integrator integrator, double exaggeration) {
+        OpticsSpec optics;
+        optics.exaggeration = exaggeration;
+        const Air air({one_blob({4, -0.06, 0}, 0.1)}, optics);
+        TraceSettings settings = finest();
+        const BentHit truth = trace(air.now, wall.get(), {0, 0, 0}, d, settings);
+        settings.integrator = integrator;
+        settings.step = 0.01;
+        const BentHit hit = trace(air.now, wall.get(), {0, 0, 0}, d, settings);
+        return glm::length(hit.at.x - truth.at.x);
+    };
+    for (const auto& [integrator, order] : {std::pair{Integrator::FirstOrder, 2.0}, {Integrator::SecondOrder, 3.0}})
+        EXPECT_NEAR(std::log2(error(integrator, 20) / error(integrator, 5)) / 2, order, 0.2) << order;
+}
+
+TEST(Perturbation, QuadratureIsOfOrderFour) {
+    const Air air({one_blob({1, -0.3, 0}, 0.4)});
+    const auto wall = geometry({plane({2, 0, 0}, {-1, 0, 0})});
+    for (const Integrator integrator : {Integrator::FirstOrder, Integrator::SecondOrder}) {
+        const auto at = [&](double step) {
+            return trace(air.now, wall.get(), {0, 0, 0}, {1, 0, 0}, fixed(integrator, step)).at.x;
+        };
+        const dvec3 truth = at(0.005);
+        const double order = std::log2(glm::length(at(0.125) - truth) / glm::length(at(0.0625) - truth));
+        EXPECT_NEAR(order, 4, 0.5) << static_cast<int>(integrator);
+    }
+}
+
+TEST(Perturbation, AWholePassBendsAsInClosedForm) {
+    // PHYSICS 4: 13.804 µrad for n_j = -1e-5, σ = 0.1, b = 0.05. T for that n_j with the default index law.
+    const IndexLaw law = index_law(OpticsSpec{});
+    const double T = 1 / (1 / law.ambient_temperature - 1e-5 / (law.refractivity * law.T0));
+    const Air air({one_blob({2, -0.05, 0}, 0.1, T)});
+    TraceSettings settings = finest();
+    settings.far = 4;
+    const BentHit bent = trace(air.now, nullptr, {0, 0, 0}, {1, 0, 0}, settings);
+    // Hot air pushes the ray away from its middle. n∇n over n²: the angle is ∇n's over n.
+    EXPECT_NEAR(bent.at.p.y / bent.at.p.x, 13.804e-6, 0.01e-6);
+}
+
+// ---- Neighbours
+
+TEST(Differentials, AgreeWithNeighbouringRays) {
+    OpticsSpec optics;
+    optics.exaggeration = 30;
+    BlobsSpec blobs;
+    blobs.blobs = {{{2, -0.1, 0.05}, 0.3, 900}, {{3, 0.2, -0.1}, 0.4, 700}, {{4, 0, 0}, 0.5, 1200}};
+    const Air air({blobs, road(2, 330)}, optics);
+    const auto wall = geometry({plane({6, 0, 0}, glm::normalize(dvec3(-1, 0.3, 0.2)))});
+    const dvec3 origin{0, 0.5, 0}, d = glm::normalize(dvec3(1, -0.05, 0.01)), right{0, 0, 1}, up = glm::cross(right, d);
+    TraceSettings settings = finest();
+    for (const bool perspective : {true, false}) {
+        Bundle pixels;
+        for (std::size_t i = 0; i < 2; ++i) (perspective ? pixels[i].p : pixels[i].x) = i == 0 ? right : up;
+        Bundle bundle = pixels;
+        const BentHit hit = trace(air.now, wall.get(), origin, d, settings, &bundle);
+        ASSERT_TRUE(hit.hit);
+        const Bundle there = on_surface(bundle, hit.at, hit.surface.normal);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto at = [&](double part) {
+                const BentHit other = trace(air.now, wall.get(), origin + part * pixels[i].x,
+                                            glm::normalize(d + part * pixels[i].p), settings);
+                return other.at.x;
+            };
+            constexpr double kPart = 1e-4;
+            const dvec3 difference = (at(kPart) - at(-kPart)) / (2 * kPart);
+            EXPECT_LE(glm::length(difference - there[i].x), 1e-5 * glm::length(difference)) << perspective << i;
+        }
+    }
+}
+
+TEST(Differentials, PassJumpsOfTheForce) {
+    // All parallel rays meet in Luneburg's focus: the bundle is nothing there and has folded behind it.
+    const Air air({profile(ProfileKind::Luneburg)});
+    for (const double y : {0.0, 0.3, -0.6}) {
+        Bundle pixels;
+        pixels[0].x = {0, 0, 1};
+        pixels[1].x = {0, 1, 0};
+        TraceSettings settings = finest();
+        const double x = -std::sqrt(1 - y * y);
+        settings.u_end = x + 3 + pi / 2;
+        Bundle bundle = pixels;
+        const BentHit focus = trace(air.now, nullptr, {-3, y, 0}, {1, 0, 0}, settings, &bundle);
+        const dvec3 d = glm::normalize(focus.at.p);
+        for (const Differential& one : bundle) EXPECT_LE(glm::length(one.x - glm::dot(one.x, d) * d), 1e-6) << y;
+        settings.u_end += 1;
+        bundle = pixels;
+        const BentHit behind = trace(air.now, nullptr, {-3, y, 0}, {1, 0, 0}, settings, &bundle);
+        // Heights y' spread from the focus at sines y': over 1 m, area |d(sin)| / cosθ … exactly 1/cosθ of each height.
+        const double cosine = std::sqrt(1 - y * y);
+        EXPECT_NEAR(magnification(pixels, {1, 0, 0}, behind.at, bundle, behind.length), cosine, 1e-5) << y;
+    }
+}
+
+Bundle pixels_of(dvec3 right, dvec3 up) {
+    return {Differential{{0, 0, 0}, right}, Differential{{0, 0, 0}, up}};
+}
+
+TEST(Differentials, MagnifyAndFold) {
+    // On the axis of a sech medium neighbours go as cos u: at 1/4 and 3/4 of the half period, with two folds between.
+    ProfileSpec sech = profile(ProfileKind::Sech);
+    sech.axis = {1, 0, 0};
+    const Air air({sech});
+    Bundle parallel;
+    parallel[0].x = {0, 0, 1};
+    parallel[1].x = {0, 1, 0};
+    for (const double part : {0.25, 0.75}) {
+        TraceSettings settings = finest();
+        settings.u_end = part * pi;
+        Bundle bundle = parallel;
+        const BentHit end = trace(air.now, nullptr, {0, 0, 0}, {1, 0, 0}, settings, &bundle);
+        EXPECT_NEAR(magnification(parallel, {1, 0, 0}, end.at, bundle, end.length), 2, 2 * kBundleError);
+    }
+    // Nothing bends: 1.
+    const Air none({});
+    const Bundle fan = pixels_of({0, 0, 1}, {0, 1, 0});
+    Bundle bundle = fan;
+    const BentHit end = trace(none.now, nullptr, {0, 0, 0}, {1, 0, 0}, usual(), &bundle);
+    EXPECT_NEAR(magnification(fan, {1, 0, 0}, end.at, bundle, end.length), 1, 1e-14);
+    // A mirage's picture is upside down, a ray above it not; by how much, the neighbours tell.
+    const Air hot({road(0.01)}, at_zero());
+    const auto wall = geometry({plane({600, 0, 0}, {-1, 0, 0})});
+    const double critical = std::sqrt(-2 * index_law(at_zero()).above_ambient(305));
+    for (const double angle : {0.6 * critical, 0.05 * critical}) {
+        const auto direction = [](double a) { return dvec3(std::cos(a), -std::sin(a), 0); };
+        const auto height = [&](double a) {
+            return trace(hot.now, wall.get(), {0, 1.5, 0}, direction(a), finest()).at.x.y;
+        };
+        const Bundle pixels = pixels_of({0, 0, 1}, {std::sin(angle), std::cos(angle), 0});
+        Bundle arrived = pixels;
+        const BentHit hit = trace(hot.now, wall.get(), {0, 1.5, 0}, direction(angle), finest(), &arrived);
+        const double slope = (height(angle - 1e-6) - height(angle + 1e-6)) / 2e-6 / 600;
+        const double found = magnification(pixels, direction(angle), hit.at, arrived, hit.length);
+        EXPECT_NEAR(found * slope, 1, 1e-3);
+        EXPECT_EQ(found<0, angle> 0.1 * critical);
+    }
+}
+
+// ---- Nothing is passed over, nothing hangs
+
+TEST(Steps, NeverSkipThinThings) {
+    const auto wall = geometry({plane({200, 0, 0}, {-1, 0, 0})});
+    {  // A layer of 1 mm, met after 100 m.
+        const SurfaceSpec thin = road(1e-3);
+        const Air air({thin}, at_zero());
+        const double angle = 0.5 * std::sqrt(-2 * index_law(at_zero()).above_ambient(305));
+        const dvec3 origin{0, 100 * std::tan(angle), 0}, d{std::cos(angle), -std::sin(angle), 0};
+        for (const Integrator integrator : kTrueIntegrators) {
+            TraceSettings settings = usual();
+            settings.integrator = integrator;
+            const BentHit hit = trace(air.now, wall.get(), origin, d, settings);
+            ASSERT_TRUE(hit.hit);
+            // Euler, too, turns back, but gains energy in a bend of few steps.
+            EXPECT_NEAR(hit.at.p.y / hit.at.p.x, std::tan(angle), integrator == Integrator::Euler ? 3e-3 : 1e-5)
+                << static_cast<int>(integrator);
+        }
+    }
+    {  // A blob of 1 mm at 100 m, hit at its steepest.
+        const double sigma = 1e-3;
+        const Air air({one_blob({100, -sigma / std::sqrt(2.0), 0}, sigma)});
+        const double nj = index_law(OpticsSpec{}).above_ambient(1000);
+        const double expected = -2 * std::sqrt(pi) * nj * std::sqrt(0.5) * std::exp(-0.5);
+        for (const Integrator integrator : kTrueIntegrators) {
+            TraceSettings settings = usual();
+            settings.integrator = integrator;
+            settings.tolerance_px = 1e-4;
+            const BentHit hit = trace(air.now, wall.get(), {0, 0, 0}, {1, 0, 0}, settings);
+            EXPECT_NEAR(hit.at.p.y / hit.at.p.x, expected, 0.02 * expected) << static_cast<int>(integrator);
+        }
+    }
+}
+
+TEST(Steps, TrappedRaysEnd) {
+    ProfileSpec eye = profile(ProfileKind::FishEye);
+    eye.n0 = 2;
+    const Air air({eye});
+    // (Euler's spirals out instead.)
+    for (const Integrator integrator : {Integrator::Adaptive, Integrator::Rk4, Integrator::Leapfrog}) {
+        TraceSettings settings = usual();
+        settings.integrator = integrator;
+        settings.step_budget = 500;
+        settings.far = 1e9;
+        const BentHit hit = trace(air.now, nullptr, {1, 0, 0}, {0, 1, 0}, settings);
+        EXPECT_EQ(hit.end, BentHit::End::Trapped);
+        EXPECT_EQ(hit.steps, 500);
+        EXPECT_TRUE(std::isfinite(hit.at.x.x + hit.at.p.x + hit.error_px));
+    }
+}
+
+TEST(Steps, EndWhereThereIsNoIndex) {
+    OpticsSpec absurd;
+    absurd.exaggeration = 1e5;
+    const Air air({one_blob({0, 0, 0}, 0.1)}, absurd);
+    const BentHit inside = trace(air.now, nullptr, {0, 0, 0}, {1, 0, 0}, usual());
+    EXPECT_EQ(inside.end, BentHit::End::NoIndex);
+    // Towards it: turned back, or ended; never through, never hanging, always finite.
+    for (const Integrator integrator : {Integrator::Adaptive, Integrator::Rk4, Integrator::Leapfrog, Integrator::Euler,
+                                        Integrator::FirstOrder, Integrator::SecondOrder}) {
+        for (int i = 0; i < 50; ++i) {
+            TraceSettings settings = usual();
+            settings.integrator = integrator;
+            settings.step_budget = 3000;
+            const BentHit hit = trace(air.now, nullptr, {-2, 0.01 * i - 0.25, 0}, {1, 0, 0}, settings);
+            EXPECT_TRUE(std::isfinite(glm::length(hit.at.x) + glm::length(hit.at.p) + hit.length + hit.error_px));
+            EXPECT_LE(hit.steps, 3000);
+        }
+    }
+}
+
+TEST(Steps, StartAnywhere) {
+    // Inside a medium, on an edge, leaving a surface.
+    const Air lens({profile(ProfileKind::Luneburg)});
+    EXPECT_LE(distance(end_of(lens, {0, 0.5, 0}, {1, 0, 0}, finest(), 0.5),
+                       {std::sqrt(1.75) * std::sin(0.5), 0.5 * std::cos(0.5), 0},
+                       {std::sqrt(1.75) * std::cos(0.5), -0.5 * std::sin(0.5), 0}),
+              kClosedFormError);
+    const Air air({road(0.01)}, at_zero());
+    const auto floor = geometry({plane({0, 0, 0}, {0, 1, 0}), plane({50, 0, 0}, {-1, 0, 0})});
+    Hit hit;
+    hit.point = {0, 0, 0};
+    hit.normal = {0, 1, 0};
+    const BentHit up = trace(air.now, floor.get(), floor->leave(hit), {std::cos(0.02), std::sin(0.02), 0}, usual());
+    ASSERT_TRUE(up.hit);
+    EXPECT_EQ(up.surface.object, 1);
+    EXPECT_GT(up.at.x.y, 0.9);
+}
+
+// ---- The path as text
+
+TEST(Path, IsWrittenSmoothlyUpToItsEnd) {
+    const Air air({profile(ProfileKind::Luneburg)});
+    TraceSettings settings = usual();
+    settings.u_end = 5;
+    const auto wall = geometry({plane({1.5, 0, 0}, {-1, 0, 0})});
+    std::ostringstream text;
+    const BentHit hit = write_path(air.now, wall.get(), {-2, 0.5, 0}, {1, 0, 0}, settings, text, "ray.csv");
+    ASSERT_TRUE(hit.hit);
+    std::istringstream lines(text.str());
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "u,x,y,z,px,py,pz");
+    int rows = 0;
+    double u_before = -1;
+    std::array<double, 7> row{};
+    dvec3 direction(1, 0, 0);
+    while (std::getline(lines, line)) {
+        std::replace(line.begin(), line.end(), ',', ' ');
+        std::istringstream numbers(line);
+        for (double& number : row) numbers >> number;
+        EXPECT_GT(row[0], u_before);
+        u_before = row[0];
+        const dvec3 d = glm::normalize(dvec3(row[4], row[5], row[6]));
+        EXPECT_LE(glm::length(d - direction), 1.2 * kPathTurn);
+        direction = d;
+        ++rows;
+    }
+    EXPECT_GT(rows, 40);
+    EXPECT_EQ(row[0], hit.at.u);
+    EXPECT_EQ(dvec3(row[1], row[2], row[3]), hit.at.x);
+}
+
+}  // namespace
+}  // namespace eikonal::reference

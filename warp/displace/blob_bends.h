@@ -1,0 +1,68 @@
+/// Hot blobs in the warp: the closed-form first-order perturbation (noise/blob_profile.h) as screen-space displacement.
+///
+///     X(z) = -2 n_j f_px e^{-|b|²/σ²} i1(a, c) b⊥,   a = -w_j/σ,  c = (L z - w_j)/σ        (PHYSICS 4, *corrected*)
+///
+/// summed over blobs; b leads from the blob to the pixel's ray, w_j is where they are closest. b⊥ in pixels is exact in
+/// perspective: with the blob at (r, u, f) in camera axes and the ray's slope s, b⊥ = (s_x f - r, s_y f - u).
+///
+/// Cost follows the area that blobs cover. Each is worked out on the nodes of a band (band.h) inside its disc only, the
+/// nodes no farther apart than kNodeSpacing σ, so that a large blob costs no more than a small one. Blobs are
+/// grouped by node spacing, one band a group and tile; tiles without blobs have none. Between layers of depth, at most
+/// kLayerSpacing σ apart where blobs are (farther where kMostBlobLayers must do), X is a cubic; behind a blob it is
+/// straight, hence exact.
+///
+/// What is left out: discs end where a blob moves a pixel by less than kNegligibleShift/N, N blobs, so that all that is
+/// dropped sums up to less than kNegligibleShift, at any pixel and depth; a blob weaker than that everywhere is
+/// skipped.
+#pragma once
+
+#include <vector>
+
+#include "noise/blob_kernel.h"
+#include "warp/displace/band.h"
+#include "warp/displace/model.h"
+#include "warp/scene/camera.h"
+
+namespace eikonal {
+
+/// Bound of the error of interpolation between nodes, relative to the blob's largest displacement.
+/// (tests/blob_bends_test.cpp)
+inline constexpr double kBlobNodeError = 1e-3;
+inline constexpr double kNodeSpacing = 0.35, kLayerSpacing = 0.5;
+/// Bound of the error between layers, relative likewise, where kMostBlobLayers suffice.
+inline constexpr double kBlobLayerError = 2e-3;
+inline constexpr int kMostBlobLayers = 64;
+
+/// A blob as one frame's camera sees it.
+struct SeenBlob {
+    double right, up, forward;  ///< of its centre from the camera (orthographic: from the camera's plane) [m]
+    double sigma;               ///< [m]
+    double amplitude;           ///< -2 n_j strength f_px
+    double reach;               ///< radius of what is not left out [m]
+    int spacing;                ///< of nodes [px]
+    PixelWindow disc;           ///< pixels that it reaches, cut to ±2^29
+};
+
+/// The blobs of one instant. Immutable, thread-safe.
+class BlobBends {
+  public:
+    /// strength: multiplies ∇n. gain: on every displacement, decides what is too weak to see. farthest: depth [m].
+    BlobBends(const std::vector<Blob>& blobs, double strength, const Camera& camera, double farthest, double gain);
+
+    /// Filled bands for a tile: pixels of `cover`, which lies within it. Their layers depend on the tile alone.
+    std::vector<Band> bands(const PixelWindow& tile, const PixelWindow& cover, double nearest, double farthest) const;
+
+    const std::vector<SeenBlob>& seen() const { return seen_; }
+
+  private:
+    bool meets(const SeenBlob& blob, const PixelWindow& tile) const;
+
+    Camera camera_;
+    std::vector<SeenBlob> seen_;  ///< those that move anything
+};
+
+/// Upper bound of the displacement by a blob n_j, σ at axial depth `forward`, of objects up to `farthest` [px]: the
+/// whole pass' 2√π n_j (b/σ) e^{-b²/σ²} at its largest, b = σ/√2.
+double largest_blob_shift(const Blob& blob, double strength, const Camera& camera, double forward, double farthest);
+
+}  // namespace eikonal

@@ -1,0 +1,101 @@
+/// Which model bends the rays through which medium: the media of a scene, each with the field that its form calls for
+/// and the model that reads it, made once a shot.
+///
+///     medium           models (first: the default)
+///     screens          screens
+///     lattice          spectral (orthographic view along a lattice axis), else first-order; also table, tables
+///     gradient-noise   first-order
+///     blobs            first-order, in closed form
+///     surface          exact bending in two dimensions (mirage.h), whatever the model
+///
+/// What cannot move any pixel by `negligible` is left out, and a note says so. Failures: UserError for media and models
+/// that do not go together and for fields that do not fit into memory.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "noise/blobs.h"
+#include "noise/refractivity.h"
+#include "noise/screens.h"
+#include "warp/displace/blob_bends.h"
+#include "warp/displace/first_order.h"
+#include "warp/displace/lattice_tables.h"
+#include "warp/displace/model.h"
+#include "warp/displace/thin_screens.h"
+#include "warp/scene/camera.h"
+
+namespace eikonal {
+
+/// One medium and its model.
+struct MediumLayer {
+    std::size_t medium = 0;  ///< index in Scene::media
+    Model model = Model::Screens;
+    std::variant<ScreenField, LatticeField, GradientNoiseField, BlobCloud> field;
+    dvec3 cell{1, 1, 1};  ///< of the field [m], first-order
+    double constant = 0;  ///< c of `table`
+    int padding = 1;      ///< of the splines of a lattice
+};
+
+/// A layer frozen at one time.
+using LayerInstant = std::variant<ScreensInstant, TablesInstant, FirstOrderInstant, BlobBends>;
+
+/// Empty bands for a layer's instant; blobs have theirs made tile by tile.
+std::vector<Band> blank_bands(const LayerInstant& layer, const Camera& camera, double nearest, double farthest);
+
+class MediaLayers {
+  public:
+    MediaLayers(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path);
+
+    const std::vector<MediumLayer>& layers() const { return layers_; }
+    /// Heated or cooled surfaces and their index in Scene::media.
+    const std::vector<std::pair<std::size_t, SurfaceSpec>>& surfaces() const { return surfaces_; }
+    const IndexLaw& law() const { return law_; }
+    double strength() const { return strength_; }
+    const Camera& reference() const { return reference_; }
+    bool perspective() const { return reference_.projection == Projection::Perspective; }
+
+    LayerInstant instant(const MediumLayer& layer, const Camera& camera, double t, double nearest, double farthest,
+                         double gain) const;
+
+    /// Variance of |d| [px²] that a layer is expected to have for objects at axial distance D, before any falloff, over
+    /// pixels and time.
+    double expected_variance(const MediumLayer& layer, double D) const;
+    /// Of one layer's thin screens (PHYSICS 6, last line); 0 for other media.
+    double focusing_variance(const MediumLayer& layer, double D) const;
+    /// Bytes of one instant of everything, about.
+    std::uint64_t instant_bytes() const;
+
+    const std::vector<std::string>& notes() const { return notes_; }
+    const std::vector<std::string>& warnings() const { return warnings_; }
+
+  private:
+    void add(std::size_t i, const TurbulenceSpec& spec);
+    void add(std::size_t i, const BlobsSpec& spec);
+    void add(std::size_t i, const SurfaceSpec& spec);
+    void add(std::size_t i, const ProfileSpec& spec);
+    void add_screens(std::size_t i, const TurbulenceSpec& spec);
+    void add_lattice(std::size_t i, const TurbulenceSpec& spec);
+    void add_noise(std::size_t i, const TurbulenceSpec& spec);
+    Model choose_model(std::size_t i, const TurbulenceSpec& spec, const PathRays& rays, std::string& why) const;
+    /// Keeps a layer unless it is too weak to see.
+    void keep(MediumLayer layer, std::string note);
+    void refuse_other_model() const;
+    double sampled_variance(const MediumLayer& layer, double D) const;
+
+    const Scene& scene_;
+    const DisplacerSettings& settings_;
+    bool camera_moves_;
+    Camera reference_;
+    double strength_;
+    IndexLaw law_;
+    std::vector<MediumLayer> layers_;
+    std::vector<std::pair<std::size_t, SurfaceSpec>> surfaces_;
+    std::vector<std::string> notes_, warnings_;
+};
+
+/// Rays that the expected rms of gradient noise and blobs is estimated from.
+inline constexpr int kRmsRays = 256;
+
+}  // namespace eikonal

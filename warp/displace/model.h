@@ -1,0 +1,42 @@
+/// The models of displacement, what a shot settles for all of them, and what counts as too little to see.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "warp/scene/scene.h"
+
+namespace eikonal {
+
+/// Cheapest first.
+enum class Model { Table, Tables, Spectral, Screens, FirstOrder };
+
+inline constexpr std::array<std::pair<std::string_view, Model>, 5> kModelNames{{{"table", Model::Table},
+                                                                                {"tables", Model::Tables},
+                                                                                {"spectral", Model::Spectral},
+                                                                                {"screens", Model::Screens},
+                                                                                {"first-order", Model::FirstOrder}}};
+constexpr std::string_view name_of(Model model) {
+    for (const auto& [name, value] : kModelNames)
+        if (value == model) return name;
+    return "";
+}
+
+/// A medium, or the dropped parts of one, that together move no pixel by more than this are left out [px].
+inline constexpr double kNegligibleShift = 0.002;
+
+/// What the scene leaves to the footage and the command line.
+struct DisplacerSettings {
+    int width = 0, height = 0;  ///< of the display window
+    double pixel_aspect = 1;
+    double fps = kDefaultFps;    ///< frame F is at t = (F - first_frame)/fps
+    std::optional<double> fov;   ///< overrides the scene's camera
+    double far = 0;              ///< greatest axial distance [m] > 0: what lies beyond is displaced as at `far`
+    std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
+    /// Media that move no pixel by more than this before any gain are left out [px] >= 0.
+    double negligible = kNegligibleShift;
+};
+
+}  // namespace eikonal
