@@ -111,6 +111,11 @@ class LatticeField {
     /// point); over realisations and starting points. Grows as u⁴ below the correlation length, as u³ beyond.
     /// (path_tables.cpp)
     std::array<double, 2> displacement_variance(int axis, double u, double aperture) const;
+    /// Discrete expectations of the variance of the slope of the map along either lateral axis e (PHYSICS 6, last
+    /// line): ∂x1_e/∂x_e at u for parallel rays along `axis`, ∂(x1_e/u)/∂θ_e for rays that diverge from a point at
+    /// angles θ_e to it, whose weight is then w(u - w)/u instead of u - w. The latter counts a point aperture, which
+    /// bounds it. (lattice_statistics.cpp)
+    std::array<double, 2> focusing_variance(int axis, double u, bool perspective, double aperture) const;
 
   private:
     /// One (kx, ky): its amplitudes are re[total] then im[total], each a over every z, then P and M of j = 1 … terms

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "noise/bessel.h"
 #include "noise/error.h"
 #include "noise/lattice.h"
+#include "noise/path_kernel.h"
 #include "noise/portable_math.h"
 
 namespace eikonal {
@@ -28,6 +30,15 @@ void for_each_octant_mode(const LatticeGeometry& g, Action&& action) {
             for (int mz = 0; mz <= g.size[2] / 2; ++mz)
                 action(std::array<int, 3>{mx, my, mz},
                        signs(mx, g.size[0]) * signs(my, g.size[1]) * signs(mz, g.size[2]));
+}
+
+/// |∫₀^u w (u - w) e^{ikw} dw| = 4 |sin φ - φ cos φ|/k³, φ = ku/2; u³/6 as φ → 0.
+double diverging_kernel(double k, double u) {
+    const double phase = 0.5 * k * u;
+    if (std::abs(phase) < 0.1) return u * u * u / 6 * (1 - phase * phase / 10);
+    double s, c;
+    portable::sincos_turns(phase / portable::kTwoPi, s, c);
+    return 4 * std::abs((s - phase * c) / (k * k * k));
 }
 
 }  // namespace
@@ -108,6 +119,33 @@ double LatticeField::variance() const {
     double sum = 0;
     for_each_octant_mode(
         geometry_, [&](const std::array<int, 3>& m, double modes) { sum += modes * mode_variance(m[0], m[1], m[2]); });
+    return sum;
+}
+
+std::array<double, 2> LatticeField::focusing_variance(int axis, double u, bool perspective, double aperture) const {
+    const int n = geometry_.size[axis];
+    std::vector<double> weight;
+    for (int m = 0; m <= n / 2; ++m) {
+        const double k = portable::kTwoPi * m / geometry_.period[axis];
+        const double kernel = perspective ? diverging_kernel(k, u) / u : std::abs(path_kernel(k, u));
+        weight.push_back(kernel * kernel * (is_nyquist(m, n) ? 0.5 : 1));  // a cosine along the ray
+    }
+    const std::array<int, 2> lateral{axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
+    std::array<double, 2> sum{};
+    for_each_octant_mode(geometry_, [&](const std::array<int, 3>& m, double modes) {
+        std::array<double, 2> k2{}, slope2{};
+        for (int e = 0; e < 2; ++e) {
+            const int along = lateral[e];
+            const double k = portable::kTwoPi * m[along] / geometry_.period[along];
+            const double slope = derivative_wavenumber(m[along], geometry_.size[along], geometry_.period[along]);
+            k2[e] = k * k;
+            slope2[e] = slope * slope;
+        }
+        const double filter = perspective ? 1 : jinc(0.5 * aperture * std::sqrt(k2[0] + k2[1]));
+        const double power =
+            modes * weight[static_cast<std::size_t>(m[axis])] * filter * filter * mode_variance(m[0], m[1], m[2]);
+        for (int e = 0; e < 2; ++e) sum[e] += power * slope2[e] * slope2[e];
+    });
     return sum;
 }
 

@@ -19,6 +19,9 @@ double one_minus_exp(double x) {
     return x * sum;
 }
 
+/// T_a + D is T without loss as long as T_a is not many times T_S: within this, to 1e-14 relative.
+constexpr double kPlainRatio = 16;
+
 /// asin s for 0 <= s <= 1/√2, by Newton's method on the sine.
 double arcsine(double s) {
     double x = s * (1 + s * s * (1.0 / 6));
@@ -36,10 +39,12 @@ SurfaceLayer::SurfaceLayer(const SurfaceSpec& spec, const IndexLaw& law)
     : origin_(spec.origin),
       normal_(spec.normal),
       dropoff_(spec.dropoff),
+      inverse_dropoff_(1 / spec.dropoff),
       surface_(spec.surface_temperature),
       ambient_(law.ambient_temperature),
       excess_(surface_ - ambient_),
-      scale_(law.refractivity * law.T0) {
+      scale_(law.refractivity * law.T0),
+      plain_(ambient_ <= kPlainRatio * surface_) {
     // |n - n_a| ∝ e/(T_a + excess e) falls to kNegligibleIndex of itself at e = kNegligibleIndex T_a/(T_S - …).
     const double part = (surface_ - kNegligibleIndex * excess_) / (kNegligibleIndex * ambient_);
     top_ = dropoff_ * std::max(0.0, portable::log(part));
@@ -49,9 +54,21 @@ SurfaceLayer::SurfaceLayer(const SurfaceSpec& spec, const IndexLaw& law)
 }
 
 SurfaceLayer::State SurfaceLayer::state(double h) const {
-    const double x = h / dropoff_;
-    const double e = portable::exp(-x);
-    return {surface_ * e + ambient_ * one_minus_exp(x), excess_ * e};
+    const double x = h * inverse_dropoff_;
+    const double e = portable::exp(-x), D = excess_ * e;
+    return {plain_ ? ambient_ + D : surface_ * e + ambient_ * one_minus_exp(x), D};
+}
+
+double SurfaceLayer::above_ambient(const State& s) const {
+    return -scale_ * (s.D / s.T / ambient_);
+}
+
+double SurfaceLayer::slope(const State& s) const {
+    return scale_ * (s.D / s.T / s.T * inverse_dropoff_);
+}
+
+double SurfaceLayer::curvature(const State& s) const {
+    return slope(s) * ((s.D - ambient_) / s.T * inverse_dropoff_);
 }
 
 double SurfaceLayer::height(const dvec3& x) const {
@@ -63,30 +80,28 @@ double SurfaceLayer::climb(const dvec3& direction) const {
 }
 
 double SurfaceLayer::above_ambient(double h) const {
-    const State s = state(std::max(h, 0.0));
-    return -scale_ * (s.D / s.T / ambient_);
+    return above_ambient(state(std::max(h, 0.0)));
 }
 
 double SurfaceLayer::slope(double h) const {
-    if (!(h >= 0)) return 0;
-    const State s = state(h);
-    return scale_ * (s.D / s.T / s.T / dropoff_);
+    return h >= 0 ? slope(state(h)) : 0;
 }
 
 double SurfaceLayer::curvature(double h) const {
-    if (!(h >= 0)) return 0;
-    const State s = state(h);
-    return scale_ * (s.D / s.T / s.T / dropoff_) * ((s.D - ambient_) / s.T / dropoff_);
+    return h >= 0 ? curvature(state(h)) : 0;
 }
 
 IndexSample SurfaceLayer::sample(const dvec3& x) const {
     const double h = height(x);
-    return {above_ambient(h), slope(h) * normal_};
+    const State s = state(std::max(h, 0.0));
+    return {above_ambient(s), (h >= 0 ? slope(s) : 0) * normal_};
 }
 
 IndexJet SurfaceLayer::jet(const dvec3& x) const {
     const double h = height(x);
-    return {above_ambient(h), slope(h) * normal_, curvature(h) * glm::outerProduct(normal_, normal_)};
+    const State s = state(std::max(h, 0.0));
+    if (!(h >= 0)) return {above_ambient(s)};
+    return {above_ambient(s), slope(s) * normal_, curvature(s) * glm::outerProduct(normal_, normal_)};
 }
 
 double SurfaceLayer::critical_slope(double camera_height, double exaggeration, RayEquation equation) const {

@@ -6,11 +6,11 @@
 /// Below the surface (h < 0) the index is that of the surface itself and has no gradient, which therefore jumps at
 /// h = 0. A function of height alone, so that n cosθ (θ the angle to the surface) is constant along a ray.
 ///
-/// With e = e^{-h/d0}, T is written T_S e + T_a (1 - e), the bracket without cancellation, D = T - T_a = (T_S - T_a) e,
-/// and A = (n0 - 1) T0:    n - n_a = -A D/(T T_a),   n' = A D/(d0 T²),   n'' = A D (D - T_a)/(d0² T³).
-/// Errors are within kSurfaceError, relative, for any d0 from 1e-12 to 1e12 m and temperatures from 1e-3 to 1e12 K (n''
-/// relative to A |D| (|D| + T_a)/(d0² T³): it changes sign); what is below 1e-290 may be zero. Without exaggeration,
-/// which is the field's.
+/// With e = e^{-h/d0}, T is written T_S e + T_a (1 - e), the bracket without cancellation (T_a + D where none
+/// threatens), D = T - T_a = (T_S - T_a) e, and A = (n0 - 1) T0:    n - n_a = -A D/(T T_a),   n' = A D/(d0 T²),   n'' =
+/// A D (D - T_a)/(d0² T³). Errors are within kSurfaceError, relative, for any d0 from 1e-12 to 1e12 m and temperatures
+/// from 1e-3 to 1e12 K (n'' relative to A |D| (|D| + T_a)/(d0² T³): it changes sign); what is below 1e-290 may be zero.
+/// Without exaggeration, which is the field's.
 #pragma once
 
 #include "noise/index_sample.h"
@@ -67,10 +67,15 @@ class SurfaceLayer {
         double T, D;
     };
     State state(double h) const;
+    double above_ambient(const State& s) const;
+    double slope(const State& s) const;
+    double curvature(const State& s) const;
 
     dvec3 origin_, normal_;
-    double dropoff_, surface_, ambient_, excess_;  ///< d0; T_S, T_a, T_S - T_a [K]
-    double scale_;                                 ///< A [K]
+    double dropoff_, inverse_dropoff_;   ///< d0, 1/d0
+    double surface_, ambient_, excess_;  ///< T_S, T_a, T_S - T_a [K]
+    double scale_;                       ///< A [K]
+    bool plain_;                         ///< T = T_a + D keeps its digits
     double top_, knee_, largest_slope_;
 };
 

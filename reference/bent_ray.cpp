@@ -38,7 +38,9 @@ class Tracer {
           tolerance_(std::max(settings.tolerance_px * settings.pixel, kFinestTolerance)),
           bundle_(bundle),
           recorder_(recorder),
-          search_(geometry, chord_deviation(settings), settings.distance) {}
+          search_(geometry, chord_deviation(settings), settings.distance) {
+        if (settings.lone && settings.integrator == Integrator::Adaptive) lone_ = settings.lone.get();
+    }
 
     BentHit run(const dvec3& origin, const dvec3& direction);
 
@@ -50,6 +52,8 @@ class Tracer {
     bool accept(const Step& step);
     double error(const Step& step, double speed) const;
     double same_place() const;
+    double quiet_height() const;
+    double clear_way() const;
     double nudge(double way);
     void enter(double reach, const dvec3& before);
     void finish(const SurfaceSearch::Met& met);
@@ -64,6 +68,8 @@ class Tracer {
     const FieldInstant& field_;
     const TraceSettings& settings_;
     double tolerance_;  ///< [rad or m]
+    const LoneSurface* lone_ = nullptr;
+    double quiet_ = 0;  ///< height above the lone surface [m]
     Bundle* bundle_;
     const StepRecorder& recorder_;
     SurfaceSearch search_;
@@ -87,7 +93,26 @@ double Tracer::same_place() const {
 double Tracer::error(const Step& step, double speed) const {
     const double x = glm::length(step.error_x), p = glm::length(step.error_p) / speed;
     const double s = result_.length + step.h * speed;
-    return settings_.perspective ? x / (settings_.distance + s) + p : x + p * std::max(settings_.far - s, 0.0);
+    if (settings_.perspective) return x / (settings_.distance + s) + p;
+    const double ahead = std::min(settings_.far - s, (settings_.u_end - step.from.u - step.h) * speed);
+    return x + p * std::max(ahead, 0.0);
+}
+
+/// A force F all the way L displaces by at most F L/2 as an angle, F L²/2 in metres.
+double Tracer::quiet_height() const {
+    const double longest = std::min(settings_.far, settings_.u_end * launch_speed_);
+    const double allowed = 2 * tolerance_ / kQuietShare / longest;
+    return lone_->quiet_height(settings_.perspective ? allowed : allowed / longest);
+}
+
+/// Way that is straight.
+double Tracer::clear_way() const {
+    if (lone_) {
+        const double way = lone_->clear_way(state_.x, glm::normalize(state_.p), quiet_);
+        if (way > 0) return way;
+    }
+    // Where F is not nothing a medium is, and no need to ask.
+    return force_ == dvec3(0) ? field_.clear_way(state_.x, glm::normalize(state_.p)) : 0;
 }
 
 /// Takes a step into the ray. True if that ends it at a surface.
@@ -219,6 +244,7 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
     }
     state_.p = launch_speed_ * direction;
     force_ = field_.force(state_.x, state_.p);
+    if (lone_) quiet_ = quiet_height();
     if (bundle_) *bundle_ = launch(*bundle_, state_, force_);
     std::optional<End> end;
     while (!end) {
@@ -228,9 +254,7 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
         } else if (result_.steps >= settings_.step_budget) {
             end = End::Trapped;
         } else {
-            // Where F is not nothing a medium is, and no need to ask.
-            const double way = force_ == dvec3(0) ? field_.clear_way(state_.x, glm::normalize(state_.p)) : 0;
-            if (way > 0) {
+            if (const double way = clear_way(); way > 0) {
                 if (go_straight(way)) end = End::Surface;
             } else {
                 end = go_bent();

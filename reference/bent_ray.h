@@ -8,10 +8,10 @@
 /// where F jumps (way_to_edge) and go on beyond, so that each method keeps its order (integrator.h); outside every
 /// medium the ray is one straight segment (clear_way). `adaptive` further keeps the local error of every step, as the
 /// final displacement it can cause, below 1/kStepShare of the tolerance. For a perspective camera, errors δx at path
-/// length s and δp cause at most (|δx|/s + |δp|/|p|) / pixel; for an orthographic one (|δx| + |δp|/|p| (far - s)) /
-/// pixel. BentHit::error_px is their sum over all steps: it bounds the displacement's error as far as the method's own
-/// estimate does, which for `adaptive` is that of order 4, pessimistic, and except where the field itself spreads rays
-/// apart.
+/// length s and δp cause at most (|δx|/s + |δp|/|p|) / pixel; for an orthographic one (|δx| + |δp|/|p| (end - s)) /
+/// pixel, where end is the longest path that settings allow. BentHit::error_px is their sum over all steps: it bounds
+/// the displacement's error as far as the method's own estimate does, which for `adaptive` is that of order 4,
+/// pessimistic, and except where the field itself spreads rays apart.
 ///
 /// Surfaces: surface_search.h; chords deviate from the curve by less than a quarter of the tolerance for a steady
 /// bend (half of it for any).
@@ -21,10 +21,12 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "reference/geometry.h"
 #include "reference/integrator.h"
+#include "reference/lone_surface.h"
 #include "reference/ray_differential.h"
 #include "reference/surface_search.h"
 
@@ -32,6 +34,8 @@ namespace eikonal::reference {
 
 /// Of the local error that adaptive allows a step.
 inline constexpr double kStepShare = 8;
+/// See TraceSettings::lone.
+inline constexpr double kQuietShare = 100;
 /// The finest tolerance, tolerance_px * pixel, that is of use: tighter ones count as this [rad or m].
 inline constexpr double kFinestTolerance = 1e-13;
 /// What adaptive reaches at its finest in the closed forms of PHYSICS 8 [m, and of p].
@@ -52,6 +56,9 @@ struct TraceSettings {
     double distance = 0;  ///< path from the camera to the ray's origin, for secondary rays [m] >= 0
     /// For `layers` and `mirror`: baseline_surface() of baselines.h.
     std::optional<SurfaceSpec> surface;
+    /// The field's only medium, if that is a surface: for speed, may be left out. Where all that it can bend a ray by
+    /// is below 1/kQuietShare of the tolerance, adaptive goes straight; first-order takes its closed form.
+    std::shared_ptr<const LoneSurface> lone;
 };
 
 struct BentHit {

@@ -198,6 +198,12 @@ dvec3 Geometry::leave(const Hit& hit) const {
     return hit.point + (1e-5 + 8 * 6e-8 * std::max(p.x, std::max(p.y, p.z))) * hit.normal;
 }
 
+std::optional<int> Geometry::sphere_around(dvec3 point) const {
+    for (const Sphere& sphere : spheres_)
+        if (glm::distance(point, sphere.center) < sphere.radius) return sphere.object;
+    return {};
+}
+
 std::optional<double> Geometry::plane_distance(const Plane& plane, dvec3 origin, dvec3 direction, double t_min,
                                                double t_max) const {
     const double t = glm::dot(plane.origin - origin, plane.normal) / glm::dot(direction, plane.normal);

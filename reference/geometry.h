@@ -66,6 +66,9 @@ class Geometry {
     /// Embree's float positions may err there.
     dvec3 leave(const Hit& hit) const;
 
+    /// Object index of a sphere that a point lies within.
+    std::optional<int> sphere_around(dvec3 point) const;
+
     const std::vector<Material>& materials() const { return materials_; }
 
   private:

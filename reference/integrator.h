@@ -12,6 +12,7 @@
 ///   euler            1       1    explicit
 #pragma once
 
+#include <array>
 #include <functional>
 #include <glm/vec3.hpp>
 
@@ -47,6 +48,9 @@ struct Step {
     dvec3 direction(double theta) const;  ///< dx/du
     dvec3 force(double theta) const;      ///< d²x/du² of the curve
     RayState at(double theta) const { return {from.x + offset(theta), direction(theta), from.u + theta * h}; }
+
+    /// Coefficients of the quintic n·(position(theta) - from.x), from that of theta to that of theta^5.
+    std::array<double, 5> along(const dvec3& n) const;
 
     /// Arc length of all of it, and from its start to part theta, by Simpson's rule [m].
     double length() const;

@@ -25,6 +25,16 @@ std::vector<std::string_view> integrator_names() {
     return names;
 }
 
+/// CLI::Range lets NaN pass.
+CLI::Validator within(double low, double high) {
+    const auto check = [=](std::string& text) -> std::string {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return "";
+        return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
+    };
+    return {check, fmt::format("{:g} to {:g}", low, high)};
+}
+
 void add_common(CLI::App& command, CommonOptions& o) {
     command.add_option("SCENE", o.scene, "scene file (.toml)")->required()->type_name("");
     command
@@ -59,7 +69,7 @@ void add_integrator(CLI::App& command, RaySettings& rays) {
         .add_option("--step", rays.step,
                     "longest step of the fixed-step integrators, thickness of a slice of layers [m] (default: as the "
                     "media need)")
-        ->check(CLI::Range(1e-9, 1e9))
+        ->check(within(1e-9, 1e9))
         ->type_name("M");
     command.add_option("--step-budget", rays.step_budget, "steps after which a trapped ray ends")
         ->check(CLI::Range(10, 1000000000))
@@ -90,7 +100,7 @@ void add_render(CLI::App& command, RenderOptions& o) {
                      "straight rays: the undistorted plate and the depth that eikonal warp takes");
     add_integrator(command, o.render.rays);
     command.add_option("--tolerance", o.render.rays.tolerance_px, "largest error of the displacement [px]")
-        ->check(CLI::Range(1e-9, 1e3))
+        ->check(within(1e-9, 1e3))
         ->capture_default_str()
         ->type_name("PX");
     command.add_option("--samples", o.render.samples, "samples a pixel for the colour; powers of two spread best")
@@ -129,12 +139,12 @@ void add_path(CLI::App& command, PathOptions& o) {
         ->type_name("X,Y,Z");
     command.add_option("--length", o.length, "of the ray, in the parameter u of dx/du = p, |p| = n [m]")
         ->required()
-        ->check(CLI::Range(0.0, kLargestValue))
+        ->check(within(0.0, kLargestValue))
         ->type_name("U");
     command.add_option("-o,--output", o.output, "CSV file (default: standard output)")->type_name("FILE.csv");
     add_integrator(command, o.rays);
     command.add_option("--tolerance", o.tolerance, "largest error of the position at the end [m]")
-        ->check(CLI::Range(1e-13, 1e3))
+        ->check(within(1e-13, 1e3))
         ->capture_default_str()
         ->type_name("M");
     command.add_option("--frame", o.frame, "frame (default: the scene's first)")->type_name("F");

@@ -84,6 +84,13 @@ bool Quadrature::without_index(double w) const {
 }
 
 Perturbed Quadrature::over(double distance) {
+    if (settings_.lone && !second_ && settings_.step == 0) {
+        if (const auto pull = settings_.lone->pull(origin_, direction_, distance)) {
+            sum_.x1 = *pull / (speed_ * speed_);
+            sum_.steps = 1;
+            return sum_;
+        }
+    }
     const double place = 1e-12 * (1 + glm::length(origin_) + std::min(distance, 1e6));
     double w = 0;
     ForceJet here = sample(0);

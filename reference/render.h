@@ -61,6 +61,8 @@ class Renderer {
     RenderedFrame render(int frame, const std::function<void()>& tile_done = {}) const;
     int tile_count() const;
 
+    /// Object index of a sphere that the camera is inside of: the picture shows it from within.
+    std::optional<int> camera_inside(int frame) const { return geometry_.sphere_around(camera(frame).position); }
     Camera camera(int frame) const { return path_.at(frame); }
 
   private:

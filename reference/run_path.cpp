@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <iostream>
+#include <limits>
 
 #include "noise/error.h"
 #include "reference/commands.h"
@@ -35,11 +36,11 @@ int run(const PathOptions& o) {
     trace.perspective = false;
     trace.pixel = 1;
     trace.tolerance_px = o.tolerance;
-    trace.far = std::numeric_limits<double>::infinity();
     trace.u_end = o.length;
     std::optional<Geometry> geometry;
     if (!scene.objects.empty()) geometry.emplace(scene, o.origin);
     const FieldInstant field = air.at(o.frame.value_or(scene.time.first_frame));
+    trace.far = std::numeric_limits<double>::infinity();
     const auto write = [&](std::ostream& stream, const std::string& name) {
         return write_path(field, geometry ? &*geometry : nullptr, o.origin, o.direction, trace, stream, name);
     };

@@ -61,6 +61,11 @@ int run(const RenderOptions& o) {
             continue;
         }
         try {
+            if (const auto object = renderer.camera_inside(frame)) {
+                const std::string& name = scene.objects[static_cast<std::size_t>(*object)].name;
+                fmt::print(stderr, "frame {}: warning: the camera is inside object.{}{}\n", frame, *object,
+                           name.empty() ? "" : fmt::format(" \"{}\"", name));
+            }
             const AtomicFile place(file);  // fails now rather than after the work if the file cannot be put there
             const auto start = Clock::now();
             TileProgress progress(fmt::format("frame {}", frame), renderer.tile_count());

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "reference/integrator.h"
 
@@ -8,37 +10,64 @@ namespace eikonal::reference {
 namespace {
 
 /// Dormand and Prince, "A family of embedded Runge-Kutta formulae", 1980: RK5(4)7M. The last stage is the end.
-constexpr double kA[6][6] = {{1.0 / 5, 0, 0, 0, 0, 0},
-                             {3.0 / 40, 9.0 / 40, 0, 0, 0, 0},
-                             {44.0 / 45, -56.0 / 15, 32.0 / 9, 0, 0, 0},
-                             {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729, 0, 0},
-                             {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656, 0},
-                             {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+constexpr int kStages = 7;
+using Tableau = std::array<std::array<double, kStages>, kStages>;
+constexpr Tableau kA = {{{},
+                         {1.0 / 5},
+                         {3.0 / 40, 9.0 / 40},
+                         {44.0 / 45, -56.0 / 15, 32.0 / 9},
+                         {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+                         {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+                         {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}}};
+constexpr double kC[kStages] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
 /// Fifth less fourth order.
-constexpr double kE[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+constexpr std::array<double, kStages> kE = {71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
+                                            -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+
+/// dx/du of a stage is p and what the forces before have turned it by, hence x_i = x + c_i h p + h² Σ (A²)_ij F_j, and
+/// the error of x is h² Σ (E A)_j F_j.
+constexpr std::array<double, kStages> times_A(const std::array<double, kStages>& row) {
+    std::array<double, kStages> product{};
+    for (std::size_t j = 0; j < kStages; ++j)
+        for (std::size_t k = j + 1; k < kStages; ++k) product[j] += row[k] * kA[k][j];
+    return product;
+}
+constexpr Tableau kA2 = [] {
+    Tableau square{};
+    for (std::size_t i = 0; i < kStages; ++i) square[i] = times_A(kA[i]);
+    return square;
+}();
+constexpr std::array<double, kStages> kEA = times_A(kE);
+
+/// F of one stage.
+template <std::size_t i>
+void stage(const FieldInstant& field, Step& step, dvec3* F) {
+    const double h = step.h;
+    dvec3 shift(0), turn(0);
+    for (std::size_t j = 0; j < i; ++j) {
+        if (kA2[i][j] != 0) shift += kA2[i][j] * F[j];
+        if (kA[i][j] != 0) turn += kA[i][j] * F[j];
+    }
+    step.shift = h * (kC[i] * step.from.p + h * shift);
+    step.turn = h * turn;
+    F[i] = field.force(step.from.x + step.shift, step.from.p + step.turn);
+}
 
 void dormand_prince(const FieldInstant& field, Step& step) {
-    const dvec3 x = step.from.x, p = step.from.p;
-    const double h = step.h;
-    dvec3 v[7], F[7];  // dx/du and dp/du of the stages
-    v[0] = p;
+    dvec3 F[kStages];
     F[0] = step.force_from;
-    for (int i = 1; i < 7; ++i) {
-        dvec3 dx(0), dp(0);
-        for (int j = 0; j < i; ++j) {
-            dx += kA[i - 1][j] * v[j];
-            dp += kA[i - 1][j] * F[j];
-        }
-        step.shift = h * dx;
-        step.turn = h * dp;
-        v[i] = p + step.turn;
-        F[i] = field.force(x + step.shift, v[i]);
+    [&]<std::size_t... i>(std::index_sequence<i...>) {
+        (stage<i + 1>(field, step, F), ...);
     }
-    step.force_to = F[6];
-    for (int i = 0; i < 7; ++i) {
-        step.error_x += h * kE[i] * v[i];
-        step.error_p += h * kE[i] * F[i];
+    (std::make_index_sequence<kStages - 1>());
+    step.force_to = F[kStages - 1];
+    dvec3 x(0), p(0);
+    for (std::size_t i = 0; i < kStages; ++i) {
+        x += kEA[i] * F[i];
+        p += kE[i] * F[i];
     }
+    step.error_x = step.h * step.h * x;
+    step.error_p = step.h * p;
 }
 
 void classical(const FieldInstant& field, Step& step) {
@@ -95,6 +124,13 @@ dvec3 Step::offset(double theta) const {
            theta * theta * theta *
                (10.0 * D - 4.0 * V + 0.5 * A +
                 theta * (-15.0 * D + 7.0 * V - A + theta * (6.0 * D - 3.0 * V + 0.5 * A)));
+}
+
+std::array<double, 5> Step::along(const dvec3& n) const {
+    const double p = h * glm::dot(n, from.p), F = h * h * glm::dot(n, force_from);
+    const double D = glm::dot(n, shift) - p - 0.5 * F, V = h * glm::dot(n, turn) - F;
+    const double A = h * h * glm::dot(n, force_to) - F;
+    return {p, 0.5 * F, 10 * D - 4 * V + 0.5 * A, -15 * D + 7 * V - A, 6 * D - 3 * V + 0.5 * A};
 }
 
 dvec3 Step::position(double theta) const {

@@ -34,6 +34,9 @@ SceneAir::SceneAir(const Scene& scene, const RaySettings& settings)
       far_(far_of(scene.plate)),
       path_(scene.camera, width_, height_),
       field_(make_field(scene, path_, width_, height_)) {
+    if (scene.media.size() == 1)
+        if (const auto* surface = std::get_if<SurfaceSpec>(&scene.media.front()))
+            lone_ = std::make_shared<LoneSurface>(*surface, scene.optics);
     baseline_surface(settings.integrator, scene.media);  // refuses what the integrator cannot do before any frame
 }
 
@@ -51,6 +54,7 @@ TraceSettings SceneAir::trace_settings(const Camera& camera) const {
     trace.step_budget = settings_.step_budget;
     trace.far = std::max(kFarthestSight, 10 * far_);
     trace.surface = baseline_surface(settings_.integrator, scene_.media);
+    trace.lone = lone_;
     return trace;
 }
 

@@ -39,6 +39,7 @@ class SceneAir {
     double far_;
     CameraPath path_;
     Field field_;
+    std::shared_ptr<const LoneSurface> lone_;
 };
 
 }  // namespace eikonal::reference

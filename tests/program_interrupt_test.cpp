@@ -88,6 +88,32 @@ TEST_F(InterruptTest, Killed) {
     check_resumes();
 }
 
+// A frame under way is given up, which may have minutes to go; those before are whole and kept.
+TEST_F(InterruptTest, StopsWithinAFrame) {
+    const Words slow{"warp",       "in.exr",
+                     "-o",         "o.####.exr",
+                     "--scene",    "air.toml",
+                     "--frames",   "1-2",
+                     "--shutter",  "0.5",
+                     "--samples",  "1024",
+                     "--set",      "medium.0.form=gradient-noise",
+                     "--set",      "medium.0.lattice=",
+                     "--set",      "medium.0.period=",
+                     "--distance", "3000",
+                     "--far",      "3000",
+                     "--threads",  "1"};
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const pid_t process = start(slow);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+        kill(process, signal);
+        const Ended ended = finish(process);
+        EXPECT_LT(ended.seconds, 5);
+        refused(ended, 1, {"interrupted", "the same command makes the rest"});
+        EXPECT_EQ(finished(), Words{});
+        EXPECT_EQ(hidden(), 0);
+    }
+}
+
 // The tracer stops within a frame, which may take it hours; the frames before are whole and kept.
 TEST_F(InterruptTest, TracerStopsWithinAFrame) {
     write_text("scene.toml", "[camera]\nresolution = [1280, 720]\n[[object]]\nshape = \"sphere\"\nradius = 1\n");

@@ -136,13 +136,21 @@ TEST_F(MovieTest, Refusals) {
     refused(warp("link.mp4", "a.mp4", {"--overwrite"}), 2, {"same file"});
     EXPECT_EQ(bytes("a.mp4"), before);
     refused(warp("a.mp4", "b.mp4", {"--depth", ":Z"}), 2, {"--depth :Z", "movie"});
-    refused(warp("a.mp4", "b.mp4", {"--codec", "divx9"}), 2, {"divx9", "h264"});
+    refused(warp("a.mp4", "b.mp4", {"--codec", "divx9"}), 2, {"--codec", "divx9", "h264"});
+    refused(warp("a.mp4", "b.mp4", {"--codec", "prores"}), 2, {"--codec prores", ".mp4 holds h264", ".mov"});
+    refused(warp("a.mp4", "b.mp4", {"--quality", "60"}), 2, {"--quality", "60", "h264", "0 (best) to 51"});
+    refused(warp("a.mp4", "b.mkv", {"--quality", "3", "--codec", "ffv1"}), 2, {"--quality", "ffv1", "lossless"});
     write_text("cut.mp4", before.substr(0, before.size() / 2));
     EXPECT_EQ(warp("cut.mp4", "b.mp4").status, 1);
     make_clip("c.mkv", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
     const std::string whole = bytes("c.mkv");
     write_text("cut.mkv", whole.substr(0, whole.size() * 6 / 10));
     EXPECT_EQ(warp("cut.mkv", "b.mkv").status, 1);
+    const Ended skipped = warp("cut.mkv", "s.####.png", {"--skip-bad-frames"});
+    EXPECT_EQ(skipped.status, 1);
+    EXPECT_EQ(skipped.lines().size(), 2u) << skipped.err;
+    EXPECT_TRUE(skipped.err.starts_with("eikonal: frames ")) << "one line for all that is missing: " << skipped.err;
+    EXPECT_NE(skipped.lines()[0].find("cut off"), std::string::npos) << skipped.err;
     EXPECT_FALSE(fs::exists(path("b.mp4")) || fs::exists(path("b.mkv")));
 }
 

@@ -27,7 +27,7 @@ TEST_F(OutputTest, FullDisk) {
     plate("in.png");
     for (const char* out : {"o.exr", "o.tif", "o.dpx", "o.tga"}) {
         SCOPED_TRACE(out);
-        refused(run({"warp", "in.exr", "-o", out}, kRoom), 1, {"frame 1", out});
+        refused(run({"warp", "in.exr", "-o", out}, kRoom), 1, {"frame 1", out, "File too large"});
         EXPECT_EQ(made("o."), Words{}) << "nothing half written, no temporaries";
     }
     refused(run({"map", "--scene", "air.toml", "-o", "o.exr"}, kRoom), 1, {"frame 1", "o.exr"});
@@ -88,6 +88,9 @@ TEST_F(OutputTest, Progress) {
     };
     silent(with("none"));
     EXPECT_NE(with("plain").err.find("3/3 frames"), std::string::npos);
+    depth("zero.exr", [](int, int) { return 0.f; });
+    const Ended failing = run({"warp", "in.exr", "-o", "z.exr", "--depth", "zero.exr", "--progress", "plain"});
+    EXPECT_NE(failing.err.find("0/1 frame, 1 failed"), std::string::npos) << failing.err;
     EXPECT_EQ(with("plain").err.find('\r'), std::string::npos);
     EXPECT_EQ(with("auto").err.find('\r'), std::string::npos) << "no bar where there is no terminal";
     const Ended bar = with("bar");

@@ -225,14 +225,18 @@ TEST(SceneErrors, UnknownKeysNameTheNearest) {
     EXPECT_EQ(parse_error("[camera]\nfov = 3"),
               "scene.toml:2: unknown key 'fov' in camera; valid: resolution, position, look_at, up, horizontal_fov, "
               "focal_length, sensor_width, projection, width, path");
-    EXPECT_EQ(parse_error(kTurbulence + "cn3 = 1"), "scene.toml:3: unknown key 'cn3' in medium.0; did you mean 'cn2'?");
+    EXPECT_EQ(parse_error(kTurbulence + "cn3 = 1"),
+              "scene.toml:3: medium.0 of type \"turbulence\" has no key 'cn3'; did you mean 'cn2'?");
     EXPECT_EQ(parse_error("[[medum]]\n"), "scene.toml:1: unknown key 'medum'; did you mean 'medium'?");
     EXPECT_EQ(parse_error(kTurbulence + "falloff = {orgin = [0,0,0]}"),
               "scene.toml:3: unknown key 'orgin' in medium.0.falloff; did you mean 'origin'?");
     EXPECT_EQ(parse_error("[[medium]]\ntype = \"blobs\"\nblob = [{}, {simga = 1}]"),
               "scene.toml:3: unknown key 'simga' in medium.0.blob.1; did you mean 'sigma'?");
-    EXPECT_EQ(parse_error("[[medium]]\ntype = \"surface\"\ncn2 = 1").substr(0, 49),
-              "scene.toml:3: unknown key 'cn2' in medium.0; vali");
+    EXPECT_EQ(
+        parse_error("[[medium]]\ntype = \"surface\"\ncn2 = 1"),
+        "scene.toml:3: medium.0 of type \"surface\" has no key 'cn2'; valid: origin, normal, surface_temperature, "
+        "dropoff, type");
+    EXPECT_EQ(parse_error("[camera]\ntype = 'x'").substr(0, 41), "scene.toml:2: unknown key 'type' in camer");
     EXPECT_EQ(parse_error("\"a\\nb\" = 1").find('\n'), std::string::npos);
 }
 
@@ -389,7 +393,7 @@ TEST(SceneSet, ChangesAddsAndRemoves) {
 TEST(SceneSet, ErrorsNameTheOption) {
     const std::string text = kTurbulence;
     EXPECT_EQ(parse_error(text, {"medium.0.cn3=1"}),
-              "--set medium.0.cn3=1: unknown key 'cn3' in medium.0; did you mean 'cn2'?");
+              "--set medium.0.cn3=1: medium.0 of type \"turbulence\" has no key 'cn3'; did you mean 'cn2'?");
     EXPECT_EQ(parse_error(text, {"medium.0.cn2=-1"}),
               "--set medium.0.cn2=-1: medium.0.cn2: value -1, must be >= 0 (Cn² [m^-2/3])");
     EXPECT_EQ(parse_error(text, {"medium.0.cn2=1e-13x"}),

@@ -31,7 +31,7 @@ FileChannel split_channel(const std::string& text) {
 }
 
 DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
-    options_.type = a.type;
+    options_.type = a.type.value_or(DepthType::Z);
     options_.range = a.range;
     if (a.depth) {
         const FileChannel split = split_channel(*a.depth);
@@ -58,6 +58,10 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
         if (fraction) horizon.remove_suffix(1);
         ground_ = Ground{parse_part(*a.ground, std::string_view(*a.ground).substr(0, comma)),
                          parse_part(*a.ground, horizon), fraction};
+        if (!fraction && ground_->horizon > 0 && ground_->horizon < 1)
+            throw UserError(
+                fmt::format("--ground: the horizon's row {0} is within the first pixel; did you mean {1:g}%?", horizon,
+                            ground_->horizon * 100));
         if (fraction) ground_->horizon /= 100;
         if (!(ground_->height > 0))
             throw UserError(fmt::format("--ground: the camera's height {} must be more than 0", ground_->height));
@@ -78,6 +82,9 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
         throw UserError(
             fmt::format("--far {:g} is nearer than the distance {:g}; give a larger --far or a smaller --distance",
                         far_, *constant_));
+    if (constant_ && a.meeting)
+        throw UserError(
+            "--depth-meeting: has no meaning where everything is at one distance; give --depth or --ground");
     options_.far = far_;
     if (a.depth) check_depth_options(options_);
 }
@@ -104,13 +111,15 @@ DepthPlane DepthInput::ground_plane(const PixelWindow& data, const PixelWindow& 
 }
 
 DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesystem::path& input_file,
-                             const PixelWindow& data, const PixelWindow& display, const Camera& camera) const {
+                             const PixelWindow& data, const PixelWindow& display, const Camera& camera,
+                             std::vector<Remark>& remarks) const {
     if (constant_) return {data, std::vector<float>(data.area(), static_cast<float>(*constant_))};
     if (ground_) return ground_plane(data, display, camera);
     if (inside_input_ && input == nullptr)
         throw UserError(fmt::format("--depth :{}: a movie holds no depth channel; name a file", options_.channel));
     DepthBuffer buffer = inside_input_ ? depth_from_picture(*input, input_file, options_, data, display)
                                        : read_depth(files_->at(frame), options_, data, display);
+    remarks.insert(remarks.end(), buffer.remarks.begin(), buffer.remarks.end());
     const auto far = static_cast<float>(far_);
     for (int y = 0; y < data.height; ++y)
         for (int x = 0; x < data.width; ++x) {

@@ -23,7 +23,7 @@ FileChannel split_channel(const std::string& text);
 
 class DepthInput {
   public:
-    /// Decides the source. UserError: ill-formed values, nothing that tells a distance.
+    /// Decides the source. UserError: ill-formed values, nothing that tells a distance, options without effect.
     DepthInput(const DepthArguments& arguments, const PlateSpec& plate);
 
     /// Greatest distance of the shot [m]: --far, else the map's range, the constant distance, the scene's, or
@@ -40,7 +40,7 @@ class DepthInput {
     /// Axial depth on `data`, limited to far(). `input`: the frame's picture, where the map is a channel of it (or
     /// null).
     DepthPlane plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
-                     const PixelWindow& display, const Camera& camera) const;
+                     const PixelWindow& display, const Camera& camera, std::vector<Remark>& remarks) const;
 
   private:
     struct Ground {

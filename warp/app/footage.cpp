@@ -18,8 +18,7 @@ int bits_of(const Part& part) {
     return std::clamp(stored, 8, 32);
 }
 
-void describe_picture(const std::filesystem::path& file, Footage& footage) {
-    const Picture header = read_picture_header(file);
+void describe_picture(const Picture& header, Footage& footage) {
     const Part& part = header.parts.front();
     footage.display = display_window(part);
     footage.pixel_aspect = pixel_aspect(part);
@@ -65,7 +64,19 @@ FootageKind footage_kind(const std::filesystem::path& path) {
     return FilePattern::parse(path).is_sequence() ? FootageKind::Sequence : FootageKind::Still;
 }
 
-Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted) {
+Picture first_header(const FilePattern& files, const std::vector<int>& frames) {
+    std::optional<FrameError> failure;
+    for (const int frame : frames) {
+        try {
+            return read_picture_header(files.at(frame));
+        } catch (const FrameError& error) {
+            if (!failure) failure.emplace(fmt::format("frame {}: {}", frame, error.what()));
+        }
+    }
+    throw FrameError(*failure);
+}
+
+Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int first_frame) {
     Footage footage;
     footage.files = FilePattern::parse(path);
     footage.kind = footage_kind(path);
@@ -79,21 +90,14 @@ Footage find_footage(const std::filesystem::path& path, const std::vector<int>& 
         return footage;
     }
     if (footage.kind == FootageKind::Still) {
-        describe_picture(path, footage);
+        describe_picture(first_header(footage.files, {wanted.empty() ? first_frame : wanted.front()}), footage);
         return footage;
     }
     footage.frames = footage.files.find_frames();
     if (footage.frames.empty()) throw FrameError(fmt::format("no file matches '{}'", path.string()));
     // a damaged first frame must not hide the others
-    const std::vector<int>& frames = wanted.empty() ? footage.frames : wanted;
-    for (std::size_t i = 0;; ++i) {
-        try {
-            describe_picture(footage.files.at(frames[i]), footage);
-            return footage;
-        } catch (const FrameError&) {
-            if (i + 1 == frames.size()) throw;
-        }
-    }
+    describe_picture(first_header(footage.files, wanted.empty() ? footage.frames : wanted), footage);
+    return footage;
 }
 
 std::vector<int> missing_frames(const std::vector<int>& frames) {

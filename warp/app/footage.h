@@ -32,9 +32,12 @@ struct Footage {
     std::vector<std::string> notes;  ///< what the user should know (rotation, interlace)
 };
 
-/// Looks at the files. `wanted`: the frames that will be read; empty: all there are. FrameError: none found,
-/// unreadable. UserError: a folder, an empty name.
-Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted);
+/// Looks at the files. `wanted`: the frames that will be read; empty: all there are. `first_frame`: that a still is, if
+/// none is wanted. FrameError: none found, unreadable (names the frame). UserError: a folder, an empty name.
+Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int first_frame);
+
+/// The header of the first of `frames` (at least one) whose file can be read; if none can, FrameError names the first.
+Picture first_header(const FilePattern& files, const std::vector<int>& frames);
 
 /// A sequence's numbers that are missing between its first and last, given its usual step.
 std::vector<int> missing_frames(const std::vector<int>& frames);

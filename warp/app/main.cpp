@@ -9,6 +9,7 @@
 
 #include "noise/error.h"
 #include "warp/app/commands.h"
+#include "warp/app/pipeline.h"
 #include "warp/image/interrupt.h"
 
 namespace {
@@ -29,7 +30,8 @@ int run_program(int argc, char** argv) {
         fmt::print(stderr, "eikonal: {}\n", error.what());
         return kWrongUsage;
     } catch (const FrameError& error) {
-        fmt::print(stderr, "eikonal: {}\n", error.what());
+        const bool cut_short = error.what() == kInterrupted;  // before the first frame
+        fmt::print(stderr, "eikonal: {}{}\n", error.what(), cut_short ? "; the same command makes the rest" : "");
         return kFrameFailed;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "eikonal: not enough memory; fewer --threads or smaller pictures need less\n");

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <limits>
+#include <span>
 
 #include "noise/error.h"
 #include "warp/app/help_format.h"
@@ -70,13 +72,22 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& va
     return meant.empty() ? otherwise : meant;
 }
 
-/// An option whose value is one of a list of names.
+/// Options of a later version.
+constexpr std::array<std::string_view, 1> kLaterOptions{"--tolerance"};
+/// Models of a later version.
+constexpr std::array<std::string_view, 2> kLaterModels{"auto", "second-order"};
+
+bool contains(std::span<const std::string_view> list, std::string_view word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+/// An option whose value is one of a list of names. `later`: of a later version.
 template <class Target, class T>
-void add_choice(CLI::App& app, const std::string& flag, Target& target, const Names<T>& names,
-                const std::string& help) {
+void add_choice(CLI::App& app, const std::string& flag, Target& target, const Names<T>& names, const std::string& help,
+                std::span<const std::string_view> later = {}) {
     app.add_option_function<std::string>(
            flag,
-           [flag, &target, &names](const std::string& text) {
+           [flag, &target, &names, later](const std::string& text) {
                std::vector<std::string> valid;
                for (const auto& [name, value] : names) {
                    if (name == text) {
@@ -85,6 +96,9 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target, const Na
                    }
                    valid.push_back(name);
                }
+               if (contains(later, text))
+                   throw UserError(
+                       fmt::format("{}: '{}' is not in this version; one of {}", flag, text, joined(names)));
                throw UserError(
                    fmt::format("{}: '{}' is none of {}{}", flag, text, joined(names), suggestion(text, valid)));
            },
@@ -153,19 +167,23 @@ void add_scene(CLI::App& app, SceneOptions& o) {
                std::uint64_t seed = 0;
                const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
                if (error != std::errc() || end != text.data() + text.size())
-                   throw UserError(fmt::format("--seed: '{}' must be a whole number, 0 or more", text));
+                   throw UserError(fmt::format("--seed: '{}' must be a whole number from 0 to {}", text,
+                                               std::numeric_limits<std::uint64_t>::max()));
                o.seed = seed;
            },
            "another turbulence of the same kind")
         ->type_name("N");
     add_number(app, "--fov", o.fov, "DEG", "horizontal field of view, instead of the scene's",
-               "between 0 and 180 degrees", [](double v) { return v > 0 && v < 180; });
+               fmt::format("from {:g} to {:g} degrees", kSmallestFov, kLargestFov),
+               [](double v) { return v >= kSmallestFov && v <= kLargestFov; });
 }
 
 void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
     begin_group(app, "Depth");
     add_number(app, "--distance", o.distance, "M", "constant distance along the axis [m]", "more than 0", positive);
-    app.add_option("--depth", o.depth, with_input ? "depth map; :CHANNEL alone names a channel of INPUT" : "depth map")
+    app.add_option("--depth", o.depth,
+                   std::string("depth map; 0 m, infinity and NaN are background") +
+                       (with_input ? "; :CHANNEL alone names a channel of INPUT" : ""))
         ->type_name("FILE[:CHANNEL]");
     add_choice(app, "--depth-type", o.type, kDepthTypes, "metres along the axis (default), along the ray, or 1/metres");
     app.add_option_function<std::string>(
@@ -189,7 +207,8 @@ void add_strength(CLI::App& app, StrengthOptions& o) {
     add_number(app, "--rms", o.rms, "PX", "scale the displacement to this rms at --far, fixed over the shot",
                "0 or more", not_negative);
     add_number(app, "--gain", o.gain, "X", "multiply the displacement", "0 or more", not_negative);
-    add_choice(app, "--model", o.model, kModels, "how displacement is computed (default: what suits each medium)");
+    add_choice(app, "--model", o.model, kModels, "how displacement is computed (default: what suits each medium)",
+               kLaterModels);
     app.add_option("--stmap", o.stmap, "also write the map as STMap (Nuke, Blender)")->type_name("FILE");
 }
 
@@ -280,6 +299,7 @@ void add_field(CLI::App& app, FieldOptions& o) {
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
         for (const std::string& word : at->remaining(true)) {
             const std::string name = word.substr(0, word.find('='));
+            if (contains(kLaterOptions, name)) throw UserError(fmt::format("{}: not in this version", name));
             if (name.rfind("--", 0) == 0)
                 throw UserError(fmt::format("{}: '{}' has no such option{}", name, at->get_name(),
                                             suggestion(name, valid, "; see --help")));
@@ -304,6 +324,7 @@ void check(DepthArguments& o) {
         }
     if (sources > 1) throw UserError(given + " contradict each other; give one of them");
     if (o.range && !o.depth) throw UserError("--depth-range: needs a --depth map");
+    if (o.type && !o.depth) throw UserError("--depth-type: needs a --depth map");
 }
 
 }  // namespace

@@ -33,11 +33,11 @@ struct SceneOptions {
 struct DepthArguments {
     std::optional<double> distance;
     std::optional<std::string> depth;  ///< FILE[:CHANNEL] or :CHANNEL
-    DepthType type = DepthType::Z;
+    std::optional<DepthType> type;     ///< left out: z
     std::optional<std::array<double, 2>> range;
     std::optional<std::string> ground;  ///< HEIGHT,HORIZON
     std::optional<double> far;
-    DepthMeeting meeting = DepthMeeting::March;
+    std::optional<DepthMeeting> meeting;  ///< left out: march
 };
 
 /// How strong, by which model, and what is written beside the picture.

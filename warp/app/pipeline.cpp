@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <set>
 
 #include "noise/error.h"
 #include "noise/memory.h"
@@ -59,10 +60,10 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
         static_cast<std::size_t>(std::clamp(memory / std::max(frame_bytes, 1.0), 1.0, double(threads + kFramesAhead)));
     RunResult result;
     Progress progress(options.progress, total, total == 1 ? "frame" : "frames");
-    std::atomic<bool> stop{false};
+    std::atomic<bool> stop{false}, cut_short{false};
     const auto take = [&](tbb::flow_control& flow) -> FrameItem* {
-        if (interrupted()) result.interrupted = true;
-        if (stop || result.interrupted) {
+        if (interrupted()) cut_short = true;
+        if (stop || cut_short) {
             flow.stop();
             return nullptr;
         }
@@ -72,7 +73,9 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
         if (!failure.error.empty()) {
             item = std::make_unique<FrameItem>();
             item->record = failure;
-            item->record.frame = stages.failing();
+            item->following = stages.failing();
+            item->record.frame = item->following.front();
+            item->following.erase(item->following.begin());
             if (!options.skip_bad_frames) stop = true;
         }
         if (!item) flow.stop();
@@ -82,31 +85,55 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
         const auto start = std::chrono::steady_clock::now();
         // Isolated: a thread that waits for its frame's rows must not begin another frame meanwhile.
         if (item->record.error.empty())
-            tbb::this_task_arena::isolate([&] { guarded(item->record, [&] { stages.work(*item); }); });
+            tbb::this_task_arena::isolate([&] {
+                guarded(item->record, [&] {
+                    check_cancelled(interrupted);
+                    stages.work(*item);
+                });
+            });
         if (!item->record.error.empty() && !options.skip_bad_frames) stop = true;
         item->record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return item;
     };
+    std::set<std::string_view> told;
     bool broken = false;  // a movie cannot go on after a frame that it lacks
     const auto finish = [&](FrameItem* raw) {
         const std::unique_ptr<FrameItem> item(raw);
         FrameRecord& record = item->record;
+        if (interrupted() && record.error == kInterrupted) {
+            cut_short = true;
+            return;
+        }
+        for (const Remark& remark : record.remarks) {
+            if (!told.insert(remark.about).second || !(remark.warning || options.verbose)) continue;
+            progress.line(fmt::format("eikonal: {}{}", remark.warning ? "warning: " : "", remark.text));
+            if (remark.warning) result.warnings.push_back(remark.text);
+        }
         const bool lost = broken && record.error.empty() && stages.in_one_file;
         if (lost)
             record.error = "not written, because an earlier frame failed";
         else if (record.error.empty() && !broken)
             guarded(record, [&] { stages.finish(*item); });
         if (!record.error.empty() && !lost) {
-            progress.line(fmt::format("eikonal: frame {}: {}", record.frame, record.error));
+            const std::string which = item->following.empty()
+                                          ? fmt::format("frame {}", record.frame)
+                                          : fmt::format("frames {}-{}", record.frame, item->following.back());
+            progress.line(fmt::format("eikonal: {}: {}", which, record.error));
             if (!options.skip_bad_frames) stop = broken = true;
         }
         result.records.push_back(record);
-        progress.step();
+        progress.step(record.error.empty());
+        for (const int frame : item->following) {
+            result.records.push_back(record);
+            result.records.back().frame = frame;
+            progress.step(false);
+        }
     };
     tbb::parallel_pipeline(in_flight,
                            tbb::make_filter<void, FrameItem*>(tbb::filter_mode::serial_in_order, take) &
                                tbb::make_filter<FrameItem*, FrameItem*>(tbb::filter_mode::parallel, work) &
                                tbb::make_filter<FrameItem*, void>(tbb::filter_mode::serial_in_order, finish));
+    result.interrupted = cut_short;
     return result;
 }
 

@@ -3,7 +3,7 @@
 /// fewer where they are so large that memory_limit() does not hold them.
 ///
 /// A frame that fails is reported as "frame F: reason" and the others go on or, unless skip_bad_frames, no more are
-/// begun. An interrupt ends the run after the frames under way. Nothing already finished is lost either way.
+/// begun. An interrupt ends the run and gives up the frames under way. Nothing already finished is lost either way.
 #pragma once
 
 #include <tbb/global_control.h>
@@ -12,9 +12,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "warp/app/options.h"
+#include "warp/image/plane.h"
 
 namespace eikonal {
 
@@ -26,11 +28,16 @@ struct FrameRecord {
     std::string error;            ///< empty: written
     double rms = 0, largest = 0;  ///< displacement [px]
     double seconds = 0;           ///< of work
+    std::vector<Remark> remarks;  ///< on its files
 };
+
+/// The error of a frame that was given up because the user has interrupted the run.
+inline constexpr std::string_view kInterrupted = "interrupted";
 
 struct RunResult {
     std::vector<FrameRecord> records;  ///< in order
     bool interrupted = false;
+    std::vector<std::string> warnings;  ///< on the frames' files, told once each
     bool failed() const;
 };
 
@@ -38,12 +45,13 @@ struct RunResult {
 struct FrameItem {
     virtual ~FrameItem() = default;
     FrameRecord record;
+    std::vector<int> following;  ///< further frames that fail with it, for the same reason
 };
 struct Stages {
     /// In order, one at a time: makes the next frame's item, with its record's frame set; null at the end. May throw
-    /// FrameError, which counts against the frame that `failing` then names.
+    /// FrameError, which counts against the frames that `failing` then names.
     std::function<std::unique_ptr<FrameItem>()> take;
-    std::function<int()> failing;
+    std::function<std::vector<int>()> failing;
     /// In parallel. May throw.
     std::function<void(FrameItem&)> work;
     /// In order, one at a time; not called for failed frames. May throw.

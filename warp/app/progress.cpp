@@ -40,11 +40,15 @@ Progress::~Progress() {
 void Progress::draw(bool last) {
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
     const bool known = total_ > 0;  // a movie may hide its length
-    const double left = done_ > 0 && known ? elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_) : 0;
-    const std::string counts = known ? fmt::format(" {}/{} {}", done_, total_, what_) : fmt::format(" {} frames", done_);
-    const std::string times = last          ? fmt::format(", {}", time_text(elapsed))
+    const double left =
+        done_ > 0 && known ? elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_) : 0;
+    const std::size_t made = done_ - failed_;
+    const std::string counts =
+        (known ? fmt::format(" {}/{} {}", made, total_, what_) : fmt::format(" {} frames", made)) +
+        (failed_ > 0 ? fmt::format(", {} failed", failed_) : "");
+    const std::string times = last                   ? fmt::format(", {}", time_text(elapsed))
                               : done_ == 0 || !known ? std::string()
-                                           : fmt::format(", {} left", time_text(left));
+                                                     : fmt::format(", {} left", time_text(left));
     if (style_ == ProgressStyle::Plain) {
         fmt::print(stderr, "{}{}\n", counts.substr(1), times);
         return;
@@ -58,13 +62,16 @@ void Progress::draw(bool last) {
     on_screen_ = true;
 }
 
-void Progress::step() {
+void Progress::step(bool made) {
     const std::lock_guard guard(lock_);
     ++done_;
+    if (!made) ++failed_;
     if (style_ == ProgressStyle::None) return;
     const auto now = Clock::now();
     const bool last = done_ == total_;
-    if (!last && now - drawn_ < (style_ == ProgressStyle::Bar ? Clock::duration(kBarPeriod) : Clock::duration(kLinePeriod))) return;
+    if (!last &&
+        now - drawn_ < (style_ == ProgressStyle::Bar ? Clock::duration(kBarPeriod) : Clock::duration(kLinePeriod)))
+        return;
     drawn_ = now;
     draw(last);
 }

@@ -18,8 +18,8 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// One more of `total` is done. Thread-safe.
-    void step();
+    /// One more of `total` is done, or has failed. Thread-safe.
+    void step(bool made = true);
     /// Prints a line (a warning, a failure) without tearing the bar. Thread-safe.
     void line(const std::string& text);
 
@@ -28,7 +28,7 @@ class Progress {
 
     using Clock = std::chrono::steady_clock;
     ProgressStyle style_;
-    std::size_t total_, done_ = 0;
+    std::size_t total_, done_ = 0, failed_ = 0;
     std::string what_;
     Clock::time_point start_, drawn_;
     bool on_screen_ = false;

@@ -17,7 +17,8 @@ void write_report(const std::filesystem::path& file, const Shot& shot, const Run
     json["focusing_variance"] = shot.displacer().focusing_variance(shot.depth().far());
     json["fps"] = shot.fps();
     json["notes"] = shot.notes();
-    json["warnings"] = shot.displacer().warnings();
+    json["warnings"] = shot.warnings();
+    for (const std::string& warning : result.warnings) json["warnings"].push_back(warning);
     json["interrupted"] = result.interrupted;
     json["frames_kept"] = kept;
     auto& frames = json["frames"] = nlohmann::ordered_json::array();

@@ -1,15 +1,23 @@
-/// `eikonal field`: slices of the refractive field of one medium, for analysis. And the two commands that only print.
+/// `eikonal field`: slices of the refractive field of one medium, for analysis. Turbulence fills its lattice's period;
+/// hot blobs, the box around those alive; a surface, a cube that stands on its origin. And the two commands that only
+/// print.
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <functional>
+#include <glm/common.hpp>
+#include <utility>
 
+#include "noise/blob_instant.h"
+#include "noise/blobs.h"
 #include "noise/error.h"
 #include "noise/gradient_noise.h"
 #include "noise/lattice_snapshot.h"
 #include "noise/memory.h"
 #include "noise/screens.h"
+#include "noise/surface.h"
 #include "warp/app/commands.h"
 #include "warp/app/outputs.h"
 #include "warp/app/pipeline.h"
@@ -22,8 +30,10 @@ namespace eikonal {
 namespace {
 
 constexpr int kChannels = 4;
-/// Slices of gradient noise, which has no lattice of its own, unless the scene states `lattice`.
-constexpr int kNoiseSamples = 64;
+/// Samples along each axis of a field that has no lattice of its own.
+constexpr int kSamples = 64;
+/// What is shown about blobs [σ], and the height over a surface [dropoff].
+constexpr double kBlobMargin = 3, kLayerHeight = 8;
 
 /// The z-slices of a field: how many, of what size, and what one holds.
 struct Slices {
@@ -69,18 +79,14 @@ Slices lattice_slices(const TurbulenceSpec& spec, double t, double exaggeration,
     return slices;
 }
 
-Slices noise_slices(const TurbulenceSpec& spec, double t, double exaggeration, double force_factor) {
-    auto field = std::make_shared<const GradientNoiseField>(spec);
-    const std::array<int, 4> size = spec.lattice.value_or(std::array{kNoiseSamples, kNoiseSamples, kNoiseSamples, 1});
-    const double side = 2 * spec.outer_scale;
-    const std::array<double, 4> period = spec.period.value_or(std::array{side, side, side, 0.0});
-    const std::array spacing{period[0] / size[0], period[1] / size[1], period[2] / size[2]};
-    Slices slices{size[2], size[0], size[1], {}, {}, [spacing](int z) { return z * spacing[2]; }};
+/// Samples of a function of position on a grid from `low` on.
+Slices sampled_slices(const std::array<int, 3>& size, const dvec3& low, const dvec3& spacing, double exaggeration,
+                      double force_factor, std::function<IndexSample(const dvec3&)> sample) {
+    Slices slices{size[2], size[0], size[1], {}, {}, [=](int z) { return low.z + z * spacing.z; }};
     slices.fill = [=](int z, std::vector<float>& out) {
         tbb::parallel_for(0, size[1], [&](int row) {
             for (int x = 0; x < size[0]; ++x) {
-                const IndexSample s =
-                    field->sample({x * spacing[0], (size[1] - 1 - row) * spacing[1], z * spacing[2]}, t);
+                const IndexSample s = sample(low + spacing * dvec3(x, size[1] - 1 - row, z));
                 float* pixel = &out[kChannels * (static_cast<std::size_t>(row) * static_cast<std::size_t>(size[0]) +
                                                  static_cast<std::size_t>(x))];
                 pixel[0] = static_cast<float>(exaggeration * s.n);
@@ -88,8 +94,56 @@ Slices noise_slices(const TurbulenceSpec& spec, double t, double exaggeration, d
             }
         });
     };
-    describe(slices, {0, 0, 0, 0}, spacing, t);  // no period
     return slices;
+}
+
+Slices noise_slices(const TurbulenceSpec& spec, double t, double exaggeration, double force_factor) {
+    auto field = std::make_shared<const GradientNoiseField>(spec);
+    const std::array<int, 4> size = spec.lattice.value_or(std::array{kSamples, kSamples, kSamples, 1});
+    const double side = 2 * spec.outer_scale;
+    const std::array<double, 4> period = spec.period.value_or(std::array{side, side, side, 0.0});
+    const dvec3 spacing{period[0] / size[0], period[1] / size[1], period[2] / size[2]};
+    Slices slices = sampled_slices({size[0], size[1], size[2]}, {0, 0, 0}, spacing, exaggeration, force_factor,
+                                   [=](const dvec3& x) { return field->sample(x, t); });
+    describe(slices, {0, 0, 0, 0}, {spacing.x, spacing.y, spacing.z}, t);  // no period
+    return slices;
+}
+
+/// A box of kSamples³ between two corners.
+Slices box_slices(const dvec3& low, const dvec3& high, double t, double exaggeration, double force_factor,
+                  std::function<IndexSample(const dvec3&)> sample) {
+    const dvec3 spacing = (high - low) / double{kSamples - 1};
+    Slices slices =
+        sampled_slices({kSamples, kSamples, kSamples}, low, spacing, exaggeration, force_factor, std::move(sample));
+    describe(slices, {0, 0, 0, 0}, {spacing.x, spacing.y, spacing.z}, t);
+    slices.attributes.emplace_back("eikonal/origin.x", low.x);
+    slices.attributes.emplace_back("eikonal/origin.y", low.y);
+    return slices;
+}
+
+/// Without blobs alive: a metre about the origin, of nothing.
+Slices blob_slices(const BlobsSpec& spec, const IndexLaw& law, const std::string& name, double t, double exaggeration,
+                   double force_factor) {
+    const std::vector<Blob> blobs = BlobCloud(spec, law, name).at(t);
+    dvec3 low(-0.5), high(0.5);
+    bool any = false;
+    for (const Blob& blob : blobs) {
+        if (blob.n == 0) continue;
+        const dvec3 margin(kBlobMargin * blob.sigma);
+        low = any ? glm::min(low, blob.center - margin) : blob.center - margin;
+        high = any ? glm::max(high, blob.center + margin) : blob.center + margin;
+        any = true;
+    }
+    auto instant = std::make_shared<const BlobInstant>(blobs);
+    return box_slices(low, high, t, exaggeration, force_factor, [=](const dvec3& x) { return instant->sample(x); });
+}
+
+Slices surface_slices(const SurfaceSpec& spec, const IndexLaw& law, double t, double exaggeration,
+                      double force_factor) {
+    const double half = 0.5 * kLayerHeight * spec.dropoff;
+    const dvec3 center = spec.origin + half * spec.normal;
+    return box_slices(center - dvec3(half), center + dvec3(half), t, exaggeration, force_factor,
+                      [layer = SurfaceLayer(spec, law)](const dvec3& x) { return layer.sample(x); });
 }
 
 /// A screen is one slice: n and F averaged over its slab, in the lateral axes of the camera (F.z = 0), at the strength
@@ -136,14 +190,21 @@ Slices make_slices(const FieldOptions& options, const Scene& scene) {
     if (static_cast<std::size_t>(options.medium) >= scene.media.size())
         throw UserError(fmt::format("--medium {}: the scene has {} medi{}, counted from 0", options.medium,
                                     scene.media.size(), scene.media.size() == 1 ? "um" : "a"));
-    const auto* spec = std::get_if<TurbulenceSpec>(&scene.media[static_cast<std::size_t>(options.medium)]);
-    if (spec == nullptr)
-        throw UserError(
-            fmt::format("--medium {}: is not turbulence; field writes media of type \"turbulence\"", options.medium));
     const double t = (options.frame.value_or(scene.time.first_frame) - scene.time.first_frame) /
                      scene.time.fps.value_or(kDefaultFps);
     const double exaggeration = scene.optics.exaggeration;
     const double force = force_strength(scene.optics);
+    const MediumSpec& medium = scene.media[static_cast<std::size_t>(options.medium)];
+    const IndexLaw law = index_law(scene.optics);
+    if (const auto* blobs = std::get_if<BlobsSpec>(&medium))
+        return blob_slices(*blobs, law, fmt::format("medium.{}", options.medium), t, exaggeration, force);
+    if (const auto* surface = std::get_if<SurfaceSpec>(&medium))
+        return surface_slices(*surface, law, t, exaggeration, force);
+    const auto* spec = std::get_if<TurbulenceSpec>(&medium);
+    if (spec == nullptr)
+        throw UserError(fmt::format(
+            "--medium {}: is a profile, which is known in closed form; field writes turbulence, blobs and surfaces",
+            options.medium));
     switch (spec->form) {
         case TurbulenceForm::Lattice:
             return lattice_slices(*spec, t, exaggeration, force);

@@ -15,12 +15,12 @@ namespace {
 /// Memory of a pixel on its way: map, depth, matte, and the map and the STMap as they are written.
 constexpr double kMapBytes = 8 + 8 + 12 + 2 * 12;
 
-/// Resolution: the scene's, else that of the depth map's first frame, else kDefaultResolution.
-PixelWindow choose_display(const Scene& scene, const DepthArguments& depth, int frame) {
+/// Resolution: the scene's, else that of the first depth map that can be read, else kDefaultResolution.
+PixelWindow choose_display(const Scene& scene, const DepthArguments& depth, const std::vector<int>& frames) {
     if (scene.camera.resolution) return {0, 0, (*scene.camera.resolution)[0], (*scene.camera.resolution)[1]};
     if (depth.depth)
         if (const FileChannel split = split_channel(*depth.depth); !split.file.empty())
-            return display_window(read_picture_header(FilePattern::parse(split.file).at(frame)).parts.front());
+            return display_window(first_header(FilePattern::parse(split.file), frames).parts.front());
     return {0, 0, kDefaultResolution[0], kDefaultResolution[1]};
 }
 
@@ -39,12 +39,13 @@ int run(const MapOptions& options) {
             fmt::format("--depth {}: map has no INPUT whose channel it could be; name a file", *options.depth.depth));
     std::vector<int> frames =
         options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{scene.time.first_frame};
-    const PixelWindow display = choose_display(scene, options.depth, frames.front());
-    const Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {});
+    const PixelWindow display = choose_display(scene, options.depth, frames);
+    Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {});
     outputs.check(frames, shot.companions());
-    shot.tell(options.run.verbose);
+    shot.tell(frames, options.run.verbose);
     const std::size_t kept = options.run.overwrite ? 0 : outputs.keep_finished(frames);
-    if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
+    if (!options.run.skip_bad_frames)
+        if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     if (!frames.empty()) shot.try_companions(frames.front(), nullptr, {}, display);
 
     std::size_t next = 0;
@@ -54,10 +55,11 @@ int run(const MapOptions& options) {
                             item->record.frame = frames[next++];
                             return item;
                         },
-                        [] { return 0; },
+                        [] { return std::vector{0}; },
                         [&](FrameItem& item) {
                             const int frame = item.record.frame;
-                            const DisplacementMap map = std::move(shot.maps(frame, {0}, nullptr, {}, display).front());
+                            const DisplacementMap map =
+                                std::move(shot.maps(frame, {0}, nullptr, {}, display, item.record.remarks).front());
                             const MapStatistics size = statistics(map);
                             item.record.rms = size.rms;
                             item.record.largest = size.largest;

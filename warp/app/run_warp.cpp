@@ -79,7 +79,11 @@ class WarpRun {
         if (footage.kind == FootageKind::Movie) {
             reader_.emplace(options.input);
         } else if (footage.kind == FootageKind::Still) {
-            still_ = read_picture(options.input);
+            try {
+                still_ = read_picture(options.input);
+            } catch (const FrameError& error) {
+                throw FrameError(fmt::format("frame {}: {}", frames_.front(), error.what()));
+            }
         }
         if (output_.single) open_movie();
     }
@@ -90,17 +94,23 @@ class WarpRun {
         if (!open_ended && next_ == frames_.size()) return nullptr;
         auto item = std::make_unique<PlateItem>();
         if (reader_) {
-            failing_ = reader_->next_number();
+            failing_ = {reader_->next_number()};
             if (!open_ended) {
                 const int wanted = frames_[next_++];
                 while (reader_->next_number() < wanted && reader_->skip()) {
                 }
-                failing_ = wanted;
+                failing_ = {wanted};
             }
             MovieFrame frame;
-            if (!reader_->next(frame)) {
-                if (open_ended) return nullptr;
-                throw FrameError(fmt::format("'{}' ends before this frame", options_.input.string()));
+            bool there = false;
+            try {
+                there = reader_->next(frame);
+                if (!there && open_ended) return nullptr;
+                if (!there) throw FrameError(fmt::format("'{}' ends earlier", options_.input.string()));
+            } catch (const FrameError&) {
+                // what a movie that ends too early lacks is told at once
+                for (; reader_->at_end() && next_ < frames_.size(); ++next_) failing_.push_back(frames_[next_]);
+                throw;
             }
             item->record.frame = frame.number;
             item->plate = std::move(frame);
@@ -109,7 +119,7 @@ class WarpRun {
         }
         return item;
     }
-    int failing() const { return failing_; }
+    std::vector<int> failing() const { return failing_; }
 
     void work(FrameItem& base) {
         auto& item = static_cast<PlateItem&>(base);
@@ -124,7 +134,8 @@ class WarpRun {
                 display.width, display.height, footage_.display.width, footage_.display.height));
         const auto* picture = std::get_if<Picture>(&item.plate);
         const std::vector<DisplacementMap> maps =
-            shot_.maps(frame, offsets_, picture, picture != nullptr ? file : options_.input, plate_window(item.plate));
+            shot_.maps(frame, offsets_, picture, picture != nullptr ? file : options_.input, plate_window(item.plate),
+                       item.record.remarks);
         const DisplacementMap& middle = maps[maps.size() / 2];
         if (options_.run.report) {
             const MapStatistics size = statistics(middle);
@@ -200,7 +211,7 @@ class WarpRun {
     std::optional<MovieFormat> movie_format_;
     Picture still_;
     std::size_t next_ = 0;
-    int failing_ = 0;
+    std::vector<int> failing_{0};
 };
 
 /// Finds wrong options of depth and matte before the first frame is begun.
@@ -240,17 +251,20 @@ int run(const WarpOptions& options) {
     if (options.displacement) outputs.add("--displacement", *options.displacement, OutputKind::Maps);
     if (options.run.report) outputs.add("--report", *options.run.report, OutputKind::Report);
     const bool to_movie = outputs.find("-o")->single;
+    if (!to_movie && (!options.codec.empty() || options.quality))
+        throw UserError(fmt::format("{}: is for movies, but '{}' is none; leave it out or name a .mov",
+                                    options.codec.empty() ? "--quality" : "--codec", options.output.string()));
     const std::vector<int> wanted = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{};
-    const Footage footage = find_footage(options.input, wanted);
+    const Footage footage = find_footage(options.input, wanted, scene.time.first_frame);
     for (const std::string& note : footage.notes) fmt::print(stderr, "eikonal: warning: {}\n", note);
     bool hole = false;
     std::vector<int> frames = choose_frames(options, footage, wanted, scene.time.first_frame, hole);
-    const Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display,
-                    footage.pixel_aspect, footage.fps ? std::optional(footage.fps->value()) : std::nullopt);
+    Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
+              footage.fps ? std::optional(footage.fps->value()) : std::nullopt);
     std::vector<NamedFiles> inputs = shot.companions();
     inputs.push_back({"the input", footage.files, footage.kind == FootageKind::Movie});
     outputs.check(frames, inputs);
-    shot.tell(options.run.verbose);
+    shot.tell(frames, options.run.verbose);
 
     std::size_t kept = 0;
     if (!options.run.overwrite) {
@@ -265,7 +279,8 @@ int run(const WarpOptions& options) {
             kept = outputs.keep_finished(frames);
         }
     }
-    if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
+    if (!options.run.skip_bad_frames)
+        if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     RunResult result;
     if (kept == 0 || !frames.empty()) result = warp_frames(options, footage, shot, outputs, frames, limit.threads());
     if (options.run.report) write_report(*options.run.report, shot, result, kept);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "noise/error.h"
+#include "warp/image/interrupt.h"
 #include "warp/image/plane.h"
 
 namespace eikonal {
@@ -19,7 +20,7 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
            const PixelWindow& display, double pixel_aspect, std::optional<double> fps)
     : scene_(std::move(scene)),
       depth_(depth, scene_.plate),
-      meeting_(depth.meeting),
+      meeting_(depth.meeting.value_or(DepthMeeting::March)),
       display_(display),
       fps_(scene_.time.fps.value_or(fps.value_or(kDefaultFps))) {
     DisplacerSettings settings;
@@ -30,6 +31,7 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
     settings.fov = scene_options.fov;
     settings.far = depth_.far();
     settings.model = strength.model;
+    settings.cancelled = interrupted;
     // --rms makes the weakest visible
     settings.negligible = strength.rms || strength.gain == 0 ? 0 : kNegligibleShift / std::abs(strength.gain);
     displacer_ = std::make_unique<Displacer>(scene_, settings);
@@ -55,10 +57,22 @@ double Shot::frame_bytes(double pixel_bytes) const {
     return static_cast<double>(display_.area()) * pixel_bytes + static_cast<double>(displacer_->instant_bytes());
 }
 
-void Shot::tell(bool verbose) const {
+void Shot::tell(const std::vector<int>& frames, bool verbose) {
+    warnings_ = displacer_->warnings();
+    if (scene_.media.empty()) warnings_.push_back("the scene has no medium: nothing moves");
+    const auto [first, last] = std::minmax_element(frames.begin(), frames.end());
+    if (scene_.camera.path && !frames.empty()) {
+        const CameraPath path(scene_.camera, display_.width, display_.height);
+        const auto [from, to] = path.frames();
+        if (*first < from || *last > to)
+            warnings_.push_back(
+                fmt::format("'{}' holds frames {:g} to {:g}, but frames {} to {} are made; outside, its "
+                            "first and last camera hold",
+                            scene_.camera.path->string(), from, to, *first, *last));
+    }
     if (verbose)
         for (const std::string& note : notes()) fmt::print(stderr, "eikonal: {}\n", note);
-    for (const std::string& warning : displacer_->warnings()) fmt::print(stderr, "eikonal: warning: {}\n", warning);
+    for (const std::string& warning : warnings_) fmt::print(stderr, "eikonal: warning: {}\n", warning);
 }
 
 std::vector<std::string> Shot::notes() const {
@@ -94,8 +108,10 @@ std::optional<std::string> Shot::missing_companion(const std::vector<int>& frame
 
 void Shot::try_companions(int frame, const Picture* input, const std::filesystem::path& input_file,
                           const PixelWindow& window) const {
+    std::vector<Remark> ignored;
     try {
-        if (!depth_.constant()) depth_.plane(frame, input, input_file, window, display_, displacer_->camera(frame));
+        if (!depth_.constant())
+            depth_.plane(frame, input, input_file, window, display_, displacer_->camera(frame), ignored);
         if (mask_) read_matte(mask_->at(frame), mask_channel_, window, display_);
     } catch (const FrameError&) {
         // this frame's own trouble, told when its turn comes
@@ -111,12 +127,13 @@ std::vector<NamedFiles> Shot::companions() const {
 }
 
 std::vector<DisplacementMap> Shot::maps(int frame, const std::vector<double>& offsets, const Picture* input,
-                                        const std::filesystem::path& input_file, const PixelWindow& window) const {
+                                        const std::filesystem::path& input_file, const PixelWindow& window,
+                                        std::vector<Remark>& remarks) const {
     std::optional<DepthPlane> plane;
     double nearest = depth_.far(), farthest = depth_.far();
     DepthSource source = depth_.constant().value_or(0);
     if (!depth_.constant()) {
-        plane.emplace(depth_.plane(frame, input, input_file, window, display_, displacer_->camera(frame)));
+        plane.emplace(depth_.plane(frame, input, input_file, window, display_, displacer_->camera(frame), remarks));
         nearest = plane->nearest();
         farthest = plane->farthest();
         source = &*plane;
@@ -124,7 +141,7 @@ std::vector<DisplacementMap> Shot::maps(int frame, const std::vector<double>& of
         nearest = farthest = *depth_.constant();
     }
     std::vector<float> mask;
-    if (mask_) mask = read_matte(mask_->at(frame), mask_channel_, window, display_);
+    if (mask_) mask = read_matte(mask_->at(frame), mask_channel_, window, display_, &remarks);
     std::vector<DisplacementMap> result;
     for (const double offset : offsets) {
         DisplacementMap map{window, std::vector<float>(2 * window.area())};

@@ -34,12 +34,16 @@ class Shot {
     double expected_rms() const { return displacer_->expected_rms(depth_.far()) * gain_; }
     /// Lines on scene, depth, media and strength.
     std::vector<std::string> notes() const;
-    /// Tells on stderr what the user should know; `verbose`: the notes too.
-    void tell(bool verbose) const;
+    /// Tells on stderr what the user should know before `frames` are made; `verbose`: the notes too.
+    void tell(const std::vector<int>& frames, bool verbose);
+    /// The warnings that tell() has told.
+    const std::vector<std::string>& warnings() const { return warnings_; }
 
-    /// Maps of the instants at frame + offsets, on `window`, masked. `input`: the frame's picture or null.
+    /// Maps of the instants at frame + offsets, on `window`, masked. `input`: the frame's picture or null. What is odd
+    /// about the depth map and the matte is added to `remarks`. FrameError: the run is interrupted, among others.
     std::vector<DisplacementMap> maps(int frame, const std::vector<double>& offsets, const Picture* input,
-                                      const std::filesystem::path& input_file, const PixelWindow& window) const;
+                                      const std::filesystem::path& input_file, const PixelWindow& window,
+                                      std::vector<Remark>& remarks) const;
 
     /// Looks at the depth maps and mattes before any frame is begun: one line on the first that is missing. UserError:
     /// the first frame's cannot be what the options say of it. `input`: as for maps().
@@ -59,6 +63,7 @@ class Shot {
     double gain_ = 1;
     std::optional<FilePattern> mask_;
     std::string mask_channel_;
+    std::vector<std::string> warnings_;
 };
 
 /// Size of a map, for the report.

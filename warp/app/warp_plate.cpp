@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "noise/refractivity.h"
+#include "warp/displace/model.h"
+#include "warp/image/interrupt.h"
 #include "warp/image/rows.h"
 
 namespace eikonal {
@@ -70,6 +72,7 @@ void resample_all(Workspace& space, const std::vector<DisplacementMap>& maps, co
     std::vector<float>& instant = space.instant;
     instant.resize(in.pixels.size());
     for (std::size_t m = 1; m < maps.size(); ++m) {
+        check_cancelled(interrupted);
         resample(source, view_of(maps[m], in.data), {instant.data(), in.data, 4, stride}, options);
         for_rows(in.data.height, [&](int y) {
             const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(stride);

@@ -17,11 +17,12 @@ constexpr double kLargestReach = 9;
 constexpr double kWholePass = 3.5449077018110318;  // 2√π
 constexpr double kSteepest = 0.42888194248035344;  // max t e^{-t²}, at t = 1/√2
 constexpr int kLastPixel = 1 << 29;
+constexpr float kWholeArea = 1.77245385F;  // √π
 
 /// t beyond which t e^{-t²} < level, 0 < level < kSteepest: fixed-point iteration of t = √ln(t/level).
 double tail_reach(double level) {
     double t = 1;
-    for (int i = 0; i < 60; ++i) t = std::sqrt(std::max(0.5, portable::log(t / level)));
+    for (int i = 0; i < 12; ++i) t = std::sqrt(std::max(0.5, portable::log(t / level)));
     return std::min(t * (1 + 1e-9), kLargestReach);
 }
 
@@ -153,24 +154,32 @@ struct RowGeometry {
     double sx, step, sy;  ///< slopes of the first node, between nodes, of the row
 };
 
-EIKONAL_CLONES void pass_perspective(const RowGeometry& g, int n, float* x, float* y, double* a, double* length) {
-    const double lat_y = g.sy * g.forward - g.up;
+/// What cancels is double, the rest float; in two loops, each of one width. g by value: the arrays then cannot alias it.
+EIKONAL_CLONES void pass_perspective(const RowGeometry g, int n, float* __restrict x, float* __restrict y,
+                                     double* __restrict a, double* __restrict length) {
+    const double lat_y = g.sy * g.forward - g.up, along = g.forward + g.sy * g.up, square = 1 + g.sy * g.sy;
+    const double twist_y = g.sy * g.right, inverse_sigma = g.inverse_sigma;
     for (int i = 0; i < n; ++i) {
         const double sx = g.sx + i * g.step;
-        const double lat_x = sx * g.forward - g.right;
-        const double twist = sx * g.up - g.sy * g.right;
-        const double inverse2 = 1 / (1 + sx * sx + g.sy * g.sy);
-        const double inverse = std::sqrt(inverse2);
-        const double b2 = (lat_x * lat_x + lat_y * lat_y + twist * twist) * inverse2;
-        const double e = g.amplitude * double{gaussian_f(static_cast<float>(std::sqrt(b2) * g.inverse_sigma))};
-        x[i] = static_cast<float>(e * lat_x);
-        y[i] = static_cast<float>(-g.aspect * e * lat_y);
-        a[i] = -(g.forward + sx * g.right + g.sy * g.up) * inverse * g.inverse_sigma;
-        length[i] = g.inverse_sigma / inverse;
+        x[i] = static_cast<float>(sx * g.forward - g.right);
+        y[i] = static_cast<float>(sx * g.up - twist_y);
+        const double L = std::sqrt(square + sx * sx);
+        length[i] = L * inverse_sigma;
+        a[i] = -(along + sx * g.right) * inverse_sigma / L;
+    }
+    const auto along_y = static_cast<float>(lat_y), amplitude = static_cast<float>(g.amplitude);
+    const auto aspect = static_cast<float>(-g.aspect), sigma2 = static_cast<float>(inverse_sigma * inverse_sigma);
+    for (int i = 0; i < n; ++i) {
+        // b/σ = √(b² L²) / (L/σ) / σ²
+        const float b = std::sqrt(x[i] * x[i] + along_y * along_y + y[i] * y[i]) / static_cast<float>(length[i]);
+        const float e = amplitude * gaussian_f(b * sigma2);
+        x[i] = e * x[i];
+        y[i] = aspect * e * along_y;
     }
 }
 
-EIKONAL_CLONES void pass_orthographic(const RowGeometry& g, int n, float* x, float* y, double* a, double* length) {
+EIKONAL_CLONES void pass_orthographic(const RowGeometry g, int n, float* __restrict x, float* __restrict y,
+                                      double* __restrict a, double* __restrict length) {
     const double lat_y = g.sy - g.up;
     for (int i = 0; i < n; ++i) {
         const double lat_x = g.sx + i * g.step - g.right;
@@ -193,7 +202,15 @@ EIKONAL_CLONES void add_layer(const float* x, const float* y, const double* a, c
     }
 }
 
+/// ∫e^{-s²}, ∫s e^{-s²} from a on: √π and nothing for a blob well ahead.
 EIKONAL_CLONES void whole_integrals(const double* a, int n, float* e, float* g) {
+    double latest = a[0];
+    for (int i = 1; i < n; ++i) latest = a[i] > latest ? a[i] : latest;
+    if (latest <= -kBlobAfar) {
+        std::fill(e, e + n, kWholeArea);
+        std::fill(g, g + n, 0.0f);
+        return;
+    }
     for (int i = 0; i < n; ++i) {
         const BlobProfile p = blob_profile(static_cast<float>(a[i]), kBlobProfileRange);
         e[i] = p.e;
@@ -211,20 +228,51 @@ EIKONAL_CLONES void add_layer_behind(const float* x, const float* y, const doubl
     }
 }
 
+/// Columns begin … end - 1 of a row of nodes.
+struct NodeRange {
+    int begin, end;
+};
+
+/// Those of `within` that a blob's disc cuts out of row j.
+NodeRange chord(const SeenBlob& b, const Camera& camera, const Band& band, int j, const NodeRange& within) {
+    const auto at = [&](int column) {
+        return camera.slope((band.column0 + column) * band.spacing + 0.5, (band.row0 + j) * band.spacing + 0.5);
+    };
+    const dvec2 first = at(within.begin), last = at(within.end - 1);
+    // b² L² = lat_x² + lat_y² + twist² is at least the first two, L² at most that of the row's ends
+    double forward = 1, reach2 = b.reach * b.reach;
+    if (band.perspective) {
+        if (b.forward <= b.reach) return within;
+        forward = b.forward;
+        reach2 *= 1 + std::max(first.x * first.x, last.x * last.x) + first.y * first.y;
+    }
+    const double lat_y = first.y * forward - b.up;
+    const double half2 = reach2 - lat_y * lat_y;
+    if (!(half2 > 0)) return {within.begin, within.begin};
+    const double half = std::sqrt(half2), step = band.spacing / camera.f_px;
+    const double low = ((b.right - half) / forward - first.x) / step,
+                 high = ((b.right + half) / forward - first.x) / step;
+    const int count = within.end - within.begin;
+    return {within.begin + std::max(0, static_cast<int>(std::floor(std::clamp(low, 0.0, double(count))))),
+            within.begin + std::min(count, static_cast<int>(std::ceil(std::clamp(high, -1.0, double(count)))) + 1)};
+}
+
 /// Adds one blob to the part of a band that its disc holds.
 void add_blob(const SeenBlob& b, const Camera& camera, Band& band, RowPast& past) {
     const int spacing = band.spacing;
     const auto node_floor = [&](int pixel) { return pixel_floor(static_cast<double>(pixel) / spacing); };
-    const int i0 = std::max(0, node_floor(b.disc.x0) - band.column0);
-    const int i1 = std::min(band.columns, node_floor(b.disc.x0 + b.disc.width) + 1 - band.column0);
+    const NodeRange columns{std::max(0, node_floor(b.disc.x0) - band.column0),
+                            std::min(band.columns, node_floor(b.disc.x0 + b.disc.width) + 1 - band.column0)};
     const int j0 = std::max(0, node_floor(b.disc.y0) - band.row0);
     const int j1 = std::min(band.rows, node_floor(b.disc.y0 + b.disc.height) + 1 - band.row0);
-    const int n = i1 - i0;
-    if (n <= 0) return;
+    if (columns.begin >= columns.end) return;
     const auto pass = band.perspective ? pass_perspective : pass_orthographic;
     float *x = past.x.data(), *y = past.y.data(), *e = past.e.data(), *g = past.g.data();
     double *a = past.a.data(), *length = past.length.data();
     for (int j = j0; j < j1; ++j) {
+        const auto [i0, i1] = chord(b, camera, band, j, columns);
+        const int n = i1 - i0;
+        if (n <= 0) continue;
         const dvec2 first = camera.slope((band.column0 + i0) * spacing + 0.5, (band.row0 + j) * spacing + 0.5);
         pass({b.right, b.up, b.forward, 1 / b.sigma, b.amplitude, camera.pixel_aspect, first.x, spacing / camera.f_px,
               first.y},

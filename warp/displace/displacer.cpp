@@ -12,9 +12,15 @@
 namespace eikonal {
 namespace {
 
-/// Pixels of a tile, anchored at (0, 0): a pixel's bits depend on its tile, which is worked out whole, and not on the
-/// window asked for. Bounds the memory of a thread, too.
+/// Largest tile in pixels; bounds the memory of a thread. Tiles are anchored at (0, 0): a pixel's bits depend on its
+/// tile, which is worked out whole, and not on the window asked for.
 constexpr int kTileWidth = 512, kTileHeight = 64;
+/// Tiles of smaller pictures are no larger than these, to a multiple of this: rays far beyond them may be very oblique.
+constexpr int kTileUnit = 16;
+
+int tile_side(int picture, int largest) {
+    return std::min(largest, (picture + kTileUnit - 1) / kTileUnit * kTileUnit);
+}
 /// Displacements beyond this [px] are cut to it, so that extreme scenes leave finite maps.
 constexpr float kLargestShift = 1e6f;
 /// Between nodes and layers the interpolant may exceed them by this factor.
@@ -43,6 +49,8 @@ struct Displacer::Shot {
 struct Displacer::Instant::State {
     Camera camera;
     double nearest, farthest, gain;
+    bool (*cancelled)();
+    int tile_width, tile_height;
     std::vector<LayerInstant> layers;
     std::vector<std::vector<Band>> blank;  ///< of each layer
     std::vector<Mirage> mirages;
@@ -100,12 +108,14 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
     const auto stride = 2 * static_cast<std::size_t>(window.width);
     const auto* plane = std::get_if<const DepthPlane*>(&depth);
     const bool march = plane != nullptr && meeting == DepthMeeting::March;
-    const int first_column = floor_div(window.x0, kTileWidth), first_row = floor_div(window.y0, kTileHeight);
-    const int columns = floor_div(window.x0 + window.width - 1, kTileWidth) - first_column + 1;
-    const int rows = floor_div(window.y0 + window.height - 1, kTileHeight) - first_row + 1;
+    const int side_x = state_->tile_width, side_y = state_->tile_height;
+    const int first_column = floor_div(window.x0, side_x), first_row = floor_div(window.y0, side_y);
+    const int columns = floor_div(window.x0 + window.width - 1, side_x) - first_column + 1;
+    const int rows = floor_div(window.y0 + window.height - 1, side_y) - first_row + 1;
     tbb::parallel_for(0, columns * rows, [&](int t) {
-        const PixelWindow tile{(first_column + t % columns) * kTileWidth, (first_row + t / columns) * kTileHeight,
-                               kTileWidth, kTileHeight};
+        check_cancelled(state_->cancelled);
+        const PixelWindow tile{(first_column + t % columns) * side_x, (first_row + t / columns) * side_y, side_x,
+                               side_y};
         const PixelWindow part = intersection(tile, window);
         // Nodes on lines depend on where the line begins, and the march's reach on the whole tile.
         const std::vector<Band> bands =
@@ -151,18 +161,19 @@ Displacer::Instant Displacer::at(double frame, double nearest, double farthest, 
     state->nearest = nearest;
     state->farthest = farthest;
     state->gain = gain;
+    state->cancelled = shot_->settings.cancelled;
+    state->tile_width = tile_side(shot_->settings.width, kTileWidth);
+    state->tile_height = tile_side(shot_->settings.height, kTileHeight);
     const double t = shot_->time(frame);
     for (const MediumLayer& layer : shot_->media.layers()) {
         state->layers.push_back(shot_->media.instant(layer, state->camera, t, nearest, farthest, gain));
         state->blank.push_back(blank_bands(state->layers.back(), state->camera, nearest, farthest));
     }
-    std::vector<std::string> names;
     for (const auto& [medium, spec] : shot_->media.surfaces()) {
-        names.push_back(fmt::format("medium.{}", medium));
         state->mirages.emplace_back(spec, shot_->media.law(), shot_->scene.optics.exaggeration,
-                                    shot_->scene.optics.ray_equation, state->camera, farthest, names.back());
+                                    shot_->scene.optics.ray_equation, state->camera, farthest,
+                                    fmt::format("medium.{}", medium));
     }
-    check_surfaces(state->mirages, names);
     return Instant(std::move(state));
 }
 

@@ -36,7 +36,7 @@ class Displacer {
     class Instant {
       public:
         /// Displacement of every pixel of `window` into `uv`: window.area() interleaved pairs. Tiles in parallel.
-        /// Finite for every finite depth > 0.
+        /// Finite for every finite depth > 0. FrameError once the settings' `cancelled` says so.
         void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, float* uv) const;
 
         const Camera& camera() const;
@@ -60,8 +60,9 @@ class Displacer {
     /// strength that the media have before any falloff. Gradient noise and blobs: estimated from kRmsRays rays.
     double expected_rms(double D) const;
 
-    /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line) by the thin screens, at the
-    /// strength that they have before any falloff: near 1 rays fold. Lattices and gradient noise are not counted.
+    /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line), ∂d_x/∂x of the map, at the
+    /// strength that the media have before any falloff: near 1 rays fold. Gradient noise and blobs: estimated from
+    /// kRmsRays pairs of pixels. Mirages, which fold by nature, are not counted.
     double focusing_variance(double D) const;
 
     /// For --verbose: one line a medium: its model and why, its sizes; and what is left out.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "noise/portable_math.h"
+#include "warp/displace/model.h"
 
 namespace eikonal {
 namespace {
@@ -68,7 +69,10 @@ void FirstOrderInstant::fill(Band& band, const Camera& camera) const {
     std::visit(
         [&](const auto& field) {
             for (int r = 0; r < band.rows; ++r)
-                for (int c = 0; c < band.columns; ++c) fill_node(band, *this, field, disc, camera, r, c);
+                for (int c = 0; c < band.columns; ++c) {
+                    check_cancelled(cancelled);
+                    fill_node(band, *this, field, disc, camera, r, c);
+                }
         },
         medium);
 }

@@ -2,9 +2,9 @@
 ///
 ///     x1(z) = L² ∫₀^z (z - w) F(P(w)) dw        (PHYSICS 6; w is axial depth, L the ray's metres a metre of depth)
 ///
-/// by two-point Gauss-Legendre rules on steps no longer than a cell of the field along the ray, so that no eddy is skipped. An aperture is a
-/// bundle of parallel (orthographic) or converging (perspective; on the object at `focus`) rays whose forces are
-/// averaged.
+/// by two-point Gauss-Legendre rules on steps no longer than a cell of the field along the ray, so that no eddy is
+/// skipped. An aperture is a bundle of parallel (orthographic) or converging (perspective; on the object at `focus`)
+/// rays whose forces are averaged.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,16 @@
 
 namespace eikonal {
 
-/// Rms error against Eq. 7 along the lattice's trigonometric sum, relative to the rms, where an inner scale holds four
-/// cells and the lattice has at most 64³ (its spline is then twice as fine; 7 % on larger ones).
-/// (tests/displacement_test.cpp)
+/// Rms error of a lattice's force that its spline is made finer for, relative to the rms (snapshot_slope_error): twice
+/// as fine as the lattice does even for power up to Nyquist. Lattices beyond 128³ keep to their own cells.
+inline constexpr double kFirstOrderSplineError = 0.015;
+/// Rms error against Eq. 7 along the lattice's trigonometric sum, relative to the rms, for any spectrum, spatial
+/// Nyquist modes apart: an even lattice's own force has none of their slope along that axis, whereas the field that a
+/// spline interpolates, here as in the tracer, has it. (tests/displacement_test.cpp)
 inline constexpr double kFirstOrderError = 0.03;
+/// What those modes make of the paper's spectrum on 32³, whose power goes up to Nyquist: the difference from
+/// `spectral`.
+inline constexpr double kNyquistSlopes = 0.15;
 
 /// A gradient-noise medium frozen at one time.
 struct GradientNoiseInstant {
@@ -31,16 +37,17 @@ struct GradientNoiseInstant {
 
 struct FirstOrderInstant {
     std::variant<LatticeSnapshot, GradientNoiseInstant> medium;
-    double strength;  ///< multiplies ∇n: ray equation and exaggeration
-    dvec3 cell;       ///< of the field along x, y, z [m]
-    double aperture;  ///< diameter [m]; 0: a point
-    double focus;     ///< axial depth on which a perspective aperture's rays converge [m]
+    double strength;                ///< multiplies ∇n: ray equation and exaggeration
+    dvec3 cell;                     ///< of the field along x, y, z [m]
+    double aperture;                ///< diameter [m]; 0: a point
+    double focus;                   ///< axial depth on which a perspective aperture's rays converge [m]
+    bool (*cancelled)() = nullptr;  ///< as DisplacerSettings
 
     /// Smallest cell, and cells a metre along a direction.
     double finest_cell() const { return std::min({cell.x, cell.y, cell.z}); }
     double cells_along(const dvec3& direction) const { return glm::length(direction / cell); }
 
-    /// Adds X and S at every node and depth.
+    /// Adds X and S at every node and depth. FrameError once cancelled.
     void fill(Band& band, const Camera& camera) const;
 };
 

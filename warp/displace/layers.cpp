@@ -9,6 +9,7 @@
 #include "noise/memory.h"
 #include "noise/portable_math.h"
 #include "noise/random.h"
+#include "noise/surface.h"
 #include "warp/scene/screen_view.h"
 
 namespace eikonal {
@@ -27,10 +28,29 @@ constexpr int kMostFirstOrderDepths = 33;
 /// Instants over which the expected rms of blobs is taken.
 constexpr int kRmsInstants = 2;
 
-/// Padding of a lattice's spline for first-order: small lattices afford the finer one (noise/lattice_snapshot.h).
-int first_order_padding(const LatticeGeometry& geometry) {
-    constexpr std::size_t kMostPadded = 64 * 64 * 64;
-    return geometry.spatial_samples() <= kMostPadded ? 2 : 1;
+/// Steps of a first-order ray: beyond the first a frame takes minutes, beyond the second it is refused.
+constexpr double kManySteps = 2000, kMostSteps = 20000;
+/// Steps that all rays of an estimate take together, about, and the fewest rays that it is taken from.
+constexpr double kRmsSteps = 256e3;
+constexpr int kFewestRmsRays = 32;
+/// Samples of the largest spline that is made finer than its lattice.
+constexpr std::size_t kMostPadded = 256 * 256 * 256;
+/// A step in gradient noise is half an inner scale, and at most this part of the finest octave's cell.
+constexpr double kPartOfNoiseCell = 0.75;
+/// Focusing variance from which folding rays are warned of.
+constexpr double kFolding = 0.5;
+
+/// Least padding that keeps a first-order spline's slope to kFirstOrderSplineError, if the lattice affords it: of the
+/// scene alone, so that every machine makes the same picture.
+int first_order_padding(const LatticeField& field) {
+    int padding = 1;
+    for (const int p : {2, 3, 4}) {
+        if (snapshot_slope_error(field, padding) <= kFirstOrderSplineError) break;
+        const auto finer = static_cast<std::size_t>(p);
+        if (field.geometry().spatial_samples() * finer * finer * finer > kMostPadded) break;
+        padding = p;
+    }
+    return padding;
 }
 
 /// Layers of the first-order model: evenly spaced in the logarithm, a step or two apart where that is not too many.
@@ -76,6 +96,7 @@ MediaLayers::MediaLayers(const Scene& scene, const DisplacerSettings& settings, 
       law_(index_law(scene.optics)) {
     for (std::size_t i = 0; i < scene.media.size(); ++i)
         std::visit([&](const auto& spec) { add(i, spec); }, scene.media[i]);
+    check_surfaces(reference_mirages_, surface_names_);
     refuse_other_model();
 }
 
@@ -87,7 +108,17 @@ void MediaLayers::keep(MediumLayer layer, std::string note) {
         return;
     }
     notes_.push_back(std::move(note));
+    add_layer(std::move(layer));
+}
+
+void MediaLayers::add_layer(MediumLayer layer) {
     layers_.push_back(std::move(layer));
+    const double focusing = focusing_variance(layers_.back(), settings_.far);
+    if (focusing > kFolding)
+        warnings_.push_back(
+            fmt::format("medium.{}: focusing variance {:.2g} at {:g} m: rays fold, where any first-order warp is only "
+                        "plausible; weaken the medium, shorten the distance, or widen the aperture",
+                        layers_.back().medium, focusing, settings_.far));
 }
 
 void MediaLayers::add(std::size_t i, const TurbulenceSpec& spec) {
@@ -125,7 +156,7 @@ void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
     }
     notes_.push_back(
         fmt::format("medium.{}: model first-order (closed form), up to {} blobs at a time", i, cloud.most()));
-    layers_.push_back({i, Model::FirstOrder, std::move(cloud), {}, 0});
+    add_layer({i, Model::FirstOrder, std::move(cloud), {}, 0});
 }
 
 void MediaLayers::add(std::size_t i, const SurfaceSpec& spec) {
@@ -133,7 +164,25 @@ void MediaLayers::add(std::size_t i, const SurfaceSpec& spec) {
         notes_.push_back(fmt::format("medium.{}: left out, the surface is at ambient temperature", i));
         return;
     }
+    const std::string name = fmt::format("medium.{}", i);
+    Mirage mirage(spec, law_, scene_.optics.exaggeration, scene_.optics.ray_equation, reference_, settings_.far, name);
+    if (!camera_moves_ && !mirage.touches({0, 0, settings_.width, settings_.height})) {
+        notes_.push_back(fmt::format("{}: left out, it moves no pixel of the view by more than {:g} px up to {:g} m",
+                                     name, kMirageThreshold, settings_.far));
+        return;
+    }
+    const SurfaceLayer layer(spec, law_);
+    const double height = layer.height(reference_.position);
+    const double critical = layer.critical_slope(height, scene_.optics.exaggeration, scene_.optics.ray_equation);
+    notes_.push_back(
+        critical > 0
+            ? fmt::format("{}: exact bending over a hot surface: rays less than {:.3g} mrad below it turn back, seen "
+                          "from {:.3g} m up that is beyond {:.3g} m",
+                          name, 1e3 * critical, height, height / critical)
+            : fmt::format("{}: exact bending over a cold surface, seen from {:.3g} m up", name, height));
     surfaces_.emplace_back(i, spec);
+    surface_names_.push_back(name);
+    reference_mirages_.push_back(std::move(mirage));
 }
 
 void MediaLayers::add(std::size_t i, const ProfileSpec&) {
@@ -163,12 +212,18 @@ void MediaLayers::add_screens(std::size_t i, const TurbulenceSpec& spec) {
         notes_.push_back(
             fmt::format("medium.{}: the wind's part along the view axis ({:.3g} m/s) does not move thin screens", i,
                         glm::dot(spec.velocity, reference_.forward)));
-    const double focusing = focusing_variance(layers_.back(), settings_.far);
-    if (focusing > 0.5)
-        warnings_.push_back(
-            fmt::format("medium.{}: focusing variance {:.2g} at {:g} m: rays fold, where any first-order warp is only "
-                        "plausible; weaken cn2, shorten the distance, or widen the aperture",
-                        i, focusing, settings_.far));
+}
+
+void MediaLayers::check_steps(std::size_t i, const dvec3& cell) {
+    const double steps = settings_.far * glm::length(reference_.forward / cell);
+    if (!(steps > kManySteps)) return;
+    const std::string what =
+        fmt::format("medium.{}: first-order takes {:.0f} steps a ray, the path of {:g} m in cells of {:.3g} m", i,
+                    steps, settings_.far, settings_.far / steps);
+    const std::string remedy = "form=\"screens\", a shorter --far, or a longer period or inner_scale";
+    if (steps > kMostSteps)
+        throw UserError(fmt::format("{}; allowed are at most {:g}; use {}", what, kMostSteps, remedy));
+    warnings_.push_back(fmt::format("{}: frames take long; quicker are {}", what, remedy));
 }
 
 Model MediaLayers::choose_model(std::size_t i, const TurbulenceSpec& spec, const PathRays& rays,
@@ -210,15 +265,20 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
     const PathRays rays = nearest_axis(reference_, scene_.optics.aperture);
     std::string why;
     const Model model = choose_model(i, spec, rays, why);
+    const dvec3 cell{geometry.spacing(0), geometry.spacing(1), geometry.spacing(2)};
+    if (model == Model::FirstOrder) check_steps(i, cell);
     std::string note =
         fmt::format("medium.{}: model {} ({}): lattice {} x {} x {} x {}, periods {:g} x {:g} x {:g} m, {:g} s", i,
                     name_of(model), why, geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3],
                     geometry.period[0], geometry.period[1], geometry.period[2], geometry.period[3]);
-    MediumLayer layer{i, model, LatticeField(spec, geometry), {}, 0};
+    MediumLayer layer{i, model, LatticeField(spec, geometry), cell, 0};
     const auto& field = std::get<LatticeField>(layer.field);
-    layer.cell = {geometry.spacing(0), geometry.spacing(1), geometry.spacing(2)};
     if (model == Model::FirstOrder) {
-        layer.padding = first_order_padding(geometry);
+        layer.padding = first_order_padding(field);
+        if (const double error = snapshot_slope_error(field, layer.padding); error > kFirstOrderSplineError)
+            notes_.push_back(fmt::format(
+                "medium.{}: too large a lattice for a finer spline, whose force is off by {:.2g} of its rms", i,
+                error));
     } else {
         const std::array paths{kNearestPadded * settings_.far, settings_.far};
         layer.padding =
@@ -241,7 +301,10 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
 }
 
 void MediaLayers::add_noise(std::size_t i, const TurbulenceSpec& spec) {
-    keep({i, Model::FirstOrder, GradientNoiseField(spec), dvec3(0.5 * spec.inner_scale), 0},
+    GradientNoiseField field(spec);
+    const dvec3 cell(std::min(0.5 * spec.inner_scale, kPartOfNoiseCell * field.smallest_cell()));
+    check_steps(i, cell);
+    keep({i, Model::FirstOrder, std::move(field), cell, 0},
          fmt::format("medium.{}: model first-order (gradient noise has no other), not periodic", i));
 }
 
@@ -267,7 +330,8 @@ LayerInstant MediaLayers::instant(const MediumLayer& layer, const Camera& camera
         return ScreensInstant{screens->at(t), reference_, strength_,
                               std::get<TurbulenceSpec>(scene_.media[layer.medium]).falloff};
     if (const auto* noise = std::get_if<GradientNoiseField>(&layer.field))
-        return FirstOrderInstant{GradientNoiseInstant{noise, t}, strength_, layer.cell, aperture, settings_.far};
+        return FirstOrderInstant{
+            GradientNoiseInstant{noise, t}, strength_, layer.cell, aperture, settings_.far, settings_.cancelled};
     const auto& field = std::get<LatticeField>(layer.field);
     const PathRays rays = nearest_axis(camera, aperture);
     switch (layer.model) {
@@ -282,8 +346,12 @@ LayerInstant MediaLayers::instant(const MediumLayer& layer, const Camera& camera
             return exact_instant(field, t, rays, spectral_depths(field, rays, nearest, farthest),
                                  DepthInterpolation::Hermite, strength_, layer.padding);
         default:
-            return FirstOrderInstant{LatticeSnapshot(field, t, layer.padding), strength_, layer.cell, aperture,
-                                     settings_.far};
+            return FirstOrderInstant{LatticeSnapshot(field, t, layer.padding),
+                                     strength_,
+                                     layer.cell,
+                                     aperture,
+                                     settings_.far,
+                                     settings_.cancelled};
     }
 }
 
@@ -298,47 +366,58 @@ double MediaLayers::expected_variance(const MediumLayer& layer, double D) const 
         const auto x1 = lattice->displacement_variance(rays.axis, D, rays.aperture);
         return strength2 * 0.5 * (1 + aspect2) * (x1[0] + x1[1]) * pixels * pixels;
     }
-    return sampled_variance(layer, D);
+    return sampled_variance(layer, D).shift;
 }
 
-/// Over kRmsRays rays at random; of blobs, which are dear to place, at kRmsInstants times.
-double MediaLayers::sampled_variance(const MediumLayer& layer, double D) const {
+/// Over rays at random and their neighbours one pixel to the right or below, by turns; of blobs, which are dear to
+/// place, at kRmsInstants times.
+MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& layer, double D) const {
     const RandomStream stream(1, "expected rms");
     const auto draw = [&](int i, int c) { return stream.uniform(static_cast<std::uint64_t>(4 * i + c)); };
-    const double scale = perspective() ? 1 / D : 1.0;
+    const bool blobs = std::holds_alternative<BlobCloud>(layer.field);
+    const double steps = blobs ? 1 : D * glm::length(reference_.forward / layer.cell);
+    const int rays = std::clamp(static_cast<int>(std::min(kRmsSteps / steps, 1e6)), kFewestRmsRays, kRmsRays);
     std::optional<LayerInstant> instant;
-    double sum = 0;
-    for (int i = 0; i < kRmsRays; ++i) {
+    SampledVariance sum;
+    for (int i = 0; i < rays; ++i) {
+        check_cancelled(settings_.cancelled);
         const int x = static_cast<int>(draw(i, 0) * settings_.width),
                   y = static_cast<int>(draw(i, 1) * settings_.height);
-        if (std::holds_alternative<BlobCloud>(layer.field)) {
-            if (i % (kRmsRays / kRmsInstants) == 0)
-                instant = this->instant(layer, reference_, 1e3 * draw(i, 2), D, D, 1);
-            const PixelWindow pixel{x, y, 1, 1};
-            dvec2 d{0, 0};
-            for (const Band& band : std::get<BlobBends>(*instant).bands(pixel, pixel, D, D)) {
-                BandRow row;
-                row.start(band, y);
-                const Shift shift = row.at(x, D);
-                d += dvec2(shift.x, shift.y);
-            }
-            sum += d.x * d.x + d.y * d.y;
-            continue;
+        if (!blobs || i % (rays / kRmsInstants) == 0)
+            instant = this->instant(layer, reference_, 1e3 * draw(i, 2), D, D, 1);
+        const bool across = i % 2 == 0;
+        const PixelWindow pair{x, y, across ? 2 : 1, across ? 1 : 2};
+        std::vector<Band> bands;
+        if (blobs) {
+            bands = std::get<BlobBends>(*instant).bands(pair, pair, D, D);
+        } else {
+            bands = blank_bands(*instant, reference_, D, D);
+            bands.front().spacing = 1;
+            bands.front().cover(pair);
+            std::get<FirstOrderInstant>(*instant).fill(bands.front(), reference_);
         }
-        instant = this->instant(layer, reference_, 1e3 * draw(i, 2), D, D, 1);
-        Band band = blank_bands(*instant, reference_, D, D).front();
-        band.spacing = 1;
-        band.cover({x, y, 1, 1});
-        std::get<FirstOrderInstant>(*instant).fill(band, reference_);
-        const Node node = band.nodes[0];
-        sum += scale * scale * (double{node[0]} * node[0] + double{node[1]} * node[1]);
+        BandRows row;
+        row.start(bands, y);
+        const Shift d = row.at(x, D);
+        if (!across) row.start(bands, y + 1);
+        const Shift next = row.at(across ? x + 1 : x, D);
+        const double slope = across ? double{next.x} - d.x : double{next.y} - d.y;
+        sum.shift += (double{d.x} * d.x + double{d.y} * d.y) / rays;
+        sum.slope += slope * slope / rays;
     }
-    return sum / kRmsRays;
+    return sum;
 }
 
 double MediaLayers::focusing_variance(const MediumLayer& layer, double D) const {
-    const auto* field = std::get_if<ScreenField>(&layer.field);
-    return field ? strength_ * strength_ * field->focusing_variance(D, perspective()) : 0;
+    const double strength2 = strength_ * strength_;
+    if (const auto* screens = std::get_if<ScreenField>(&layer.field))
+        return strength2 * screens->focusing_variance(D, perspective());
+    if (const auto* lattice = std::get_if<LatticeField>(&layer.field)) {
+        const PathRays rays = nearest_axis(reference_, scene_.optics.aperture);
+        const auto slope = lattice->focusing_variance(rays.axis, D, perspective(), rays.aperture);
+        return strength2 * 0.5 * (slope[0] + slope[1]);
+    }
+    return sampled_variance(layer, D).slope;
 }
 
 std::uint64_t MediaLayers::instant_bytes() const {

@@ -9,7 +9,7 @@
 ///     surface          exact bending in two dimensions (mirage.h), whatever the model
 ///
 /// What cannot move any pixel by `negligible` is left out, and a note says so. Failures: UserError for media and models
-/// that do not go together and for fields that do not fit into memory.
+/// that do not go together, for fields that do not fit into memory, and for first-order paths of too many cells.
 #pragma once
 
 #include <string>
@@ -22,6 +22,7 @@
 #include "warp/displace/blob_bends.h"
 #include "warp/displace/first_order.h"
 #include "warp/displace/lattice_tables.h"
+#include "warp/displace/mirage.h"
 #include "warp/displace/model.h"
 #include "warp/displace/thin_screens.h"
 #include "warp/scene/camera.h"
@@ -62,7 +63,8 @@ class MediaLayers {
     /// Variance of |d| [px²] that a layer is expected to have for objects at axial distance D, before any falloff, over
     /// pixels and time.
     double expected_variance(const MediumLayer& layer, double D) const;
-    /// Of one layer's thin screens (PHYSICS 6, last line); 0 for other media.
+    /// Variance of ∂d_x/∂x of a layer's map at axial distance D (PHYSICS 6, last line), before any falloff: of lattices
+    /// as for rays along their axis nearest to the view, of gradient noise and blobs from neighbouring pixels.
     double focusing_variance(const MediumLayer& layer, double D) const;
     /// Bytes of one instant of everything, about.
     std::uint64_t instant_bytes() const;
@@ -81,8 +83,16 @@ class MediaLayers {
     Model choose_model(std::size_t i, const TurbulenceSpec& spec, const PathRays& rays, std::string& why) const;
     /// Keeps a layer unless it is too weak to see.
     void keep(MediumLayer layer, std::string note);
+    /// Keeps it, and warns of folding rays.
+    void add_layer(MediumLayer layer);
+    /// Warns of, or refuses, first-order rays of too many steps through cells [m].
+    void check_steps(std::size_t i, const dvec3& cell);
     void refuse_other_model() const;
-    double sampled_variance(const MediumLayer& layer, double D) const;
+    struct SampledVariance {
+        double shift = 0;  ///< of |d| [px²]
+        double slope = 0;  ///< of ∂d_x/∂x and ∂d_y/∂y, pixel to pixel
+    };
+    SampledVariance sampled_variance(const MediumLayer& layer, double D) const;
 
     const Scene& scene_;
     const DisplacerSettings& settings_;
@@ -92,10 +102,12 @@ class MediaLayers {
     IndexLaw law_;
     std::vector<MediumLayer> layers_;
     std::vector<std::pair<std::size_t, SurfaceSpec>> surfaces_;
+    std::vector<std::string> surface_names_;  ///< for messages
+    std::vector<Mirage> reference_mirages_;   ///< as the reference camera sees them
     std::vector<std::string> notes_, warnings_;
 };
 
-/// Rays that the expected rms of gradient noise and blobs is estimated from.
+/// Rays that the expected rms and focusing of gradient noise and blobs are estimated from, fewer where they are long.
 inline constexpr int kRmsRays = 256;
 
 }  // namespace eikonal

@@ -1,5 +1,7 @@
 #include "warp/displace/meet.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -25,31 +27,24 @@ struct Ray {
     BandRows& bands;
     const DepthPlane& depth;
     int x, y;
+    float front;  ///< nearest within reach
 
     Shift at(double z) const { return bands.at(x, z); }
     /// The depth buffer where a displacement points to.
     float buffer(Shift d) const { return depth.at(x + whole(d.x + 0.5f), y + whole(d.y + 0.5f)); }
-
-    /// Whether the picture's samples around pixel + d mix the facet there, at depth `facet`, with one much nearer,
-    /// other than those that `ignored` says.
-    template <class Ignored>
-    bool at_edge(Shift d, float facet, const Ignored& ignored) const {
-        const float limit = kEdgeRatio * facet;
-        if (limit <= depth.nearest()) return false;
+    /// Depth where the ray stops at the latest if it is at pixel + d then: the facet's there, or that of what fronts
+    /// it or a pixel that the picture's samples mix it with.
+    float stop(Shift d) const {
+        const float facet = buffer(d), limit = kEdgeRatio * facet;
+        if (limit <= front) return facet;
         const int xi = x + whole(d.x), yi = y + whole(d.y);
         const int nx = d.x != std::floor(d.x) ? 1 : 0, ny = d.y != std::floor(d.y) ? 1 : 0;
+        float nearest = std::numeric_limits<float>::infinity();
         for (int j = yi; j <= yi + ny; ++j)
-            for (int i = xi; i <= xi + nx; ++i)
-                if (const float there = depth.at(i, j); there < limit && !ignored(i, j, there)) return true;
-        return false;
+            for (int i = xi; i <= xi + nx; ++i) nearest = std::min(nearest, depth.front(i, j));
+        return nearest < limit ? nearest : facet;
     }
-    bool at_edge(Shift d, float facet) const {
-        return at_edge(d, facet, [](int, int, float) { return false; });
-    }
-    bool blocked(Shift d, double z) const {
-        const float facet = buffer(d);
-        return facet <= static_cast<float>(z) || at_edge(d, facet);
-    }
+    bool blocked(Shift d, double z) const { return stop(d) <= static_cast<float>(z); }
 };
 
 /// A ray that a mirage moves: ground stands in its way nowhere but where it ends.
@@ -67,10 +62,19 @@ struct SkimmingRay : Ray {
         return {seen, ground.is(i, j, seen) ? last : std::min<double>(seen, last)};
     }
     bool blocked(Shift d, double z) const { return under(d).stop <= z; }
+    /// Whether the picture's samples around pixel + d hold an object nearer than `limit`.
+    bool at_edge(Shift d, float limit) const {
+        if (limit <= depth.nearest()) return false;
+        const int xi = x + whole(d.x), yi = y + whole(d.y);
+        const int nx = d.x != std::floor(d.x) ? 1 : 0, ny = d.y != std::floor(d.y) ? 1 : 0;
+        for (int j = yi; j <= yi + ny; ++j)
+            for (int i = xi; i <= xi + nx; ++i)
+                if (const float there = depth.at(i, j); there < limit && !ground.is(i, j, there)) return true;
+        return false;
+    }
     /// d, or where the picture's samples there mix in something much nearer, the centre of the facet.
     Shift settled(Shift d) const {
-        const float seen = under(d).seen;
-        if (!at_edge(d, seen, [this](int i, int j, float z) { return ground.is(i, j, z); })) return d;
+        if (!at_edge(d, kEdgeRatio * under(d).seen)) return d;
         return {static_cast<float>(whole(d.x + 0.5f)), static_cast<float>(whole(d.y + 0.5f))};
     }
     /// Whether no object up to depth z is about the way from pixel + a to pixel + b. Looks at single pixels where these
@@ -119,11 +123,10 @@ Shift march(const Ray& ray, const Range& range) {
     Shift d = ray.at(z);
     if (range.nearest == range.farthest) return d;
     for (int step = 0; step < kMostMarchSteps; ++step) {
-        const float under = ray.buffer(d);
-        const double facet = std::min(under, range.farthest);
-        if (facet <= z || ray.at_edge(d, under)) return d;
+        const float facet = std::min(ray.stop(d), range.farthest);
+        if (facet <= z) return d;
         const Shift upon = ray.at(facet);
-        if (same_pixel(upon, d) && !ray.at_edge(upon, under)) return upon;
+        if (same_pixel(upon, d) && std::min(ray.stop(upon), range.farthest) == facet) return upon;
         double next = facet;
         Shift e = upon;
         if (const double way = motion(upon, d); way > kMarchStep) {
@@ -133,8 +136,7 @@ Shift march(const Ray& ray, const Range& range) {
         }
         if (ray.blocked(e, next)) {
             // a facet met exactly at its own depth, or something that the ray ran into on its way there
-            const float there = ray.buffer(e);
-            return there == static_cast<float>(next) && !ray.at_edge(e, there) ? e : bisect(ray, z, d, next, e);
+            return ray.stop(e) == static_cast<float>(next) ? e : bisect(ray, z, d, next, e);
         }
         z = next;
         d = e;
@@ -197,7 +199,7 @@ Shift fixed_point(const Ray& ray) {
 }
 
 Range unite(const Range& a, const Range& b) {
-    return {std::min(a.nearest, b.nearest), std::max(a.farthest, b.farthest)};
+    return {std::min(a.nearest, b.nearest), std::max(a.farthest, b.farthest), std::min(a.front, b.front)};
 }
 
 }  // namespace
@@ -210,18 +212,32 @@ DepthPlane::DepthPlane(const PixelWindow& window, std::vector<float> metres)
     all_ = {*low, *high};
     blocks_.assign(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_),
                    {all_.farthest, all_.nearest});
-    const float* z = metres_.data();
-    for (int y = 0; y < window.height; ++y) {
-        Range* row = blocks_.data() + static_cast<std::size_t>(y / kBlock) * static_cast<std::size_t>(block_columns_);
-        for (int x = 0; x < window.width; ++x, ++z) row[x / kBlock] = unite(row[x / kBlock], {*z, *z});
-    }
+    fronts_.resize(metres_.size());
+    tbb::parallel_for(0, block_rows_, [&](int block) {
+        Range* row = blocks_.data() + static_cast<std::size_t>(block) * static_cast<std::size_t>(block_columns_);
+        for (int y = block * kBlock; y < std::min(window.height, (block + 1) * kBlock); ++y) {
+            find_fronts(y);
+            const auto line = static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width);
+            const float *z = metres_.data() + line, *front = fronts_.data() + line;
+            for (int x = 0; x < window.width; ++x) row[x / kBlock] = unite(row[x / kBlock], {z[x], z[x], front[x]});
+        }
+    });
 }
 
-float DepthPlane::at(int x, int y) const {
-    const int cx = std::clamp(x - window_.x0, 0, window_.width - 1);
-    const int cy = std::clamp(y - window_.y0, 0, window_.height - 1);
-    return metres_[static_cast<std::size_t>(cy) * static_cast<std::size_t>(window_.width) +
-                   static_cast<std::size_t>(cx)];
+void DepthPlane::find_fronts(int y) {
+    for (int x = 0; x < window_.width; ++x) {
+        const int px = window_.x0 + x, py = window_.y0 + y;
+        const float z = at(px, py), limit = kEdgeRatio * z;
+        float front = std::numeric_limits<float>::infinity();
+        for (int j = -1; j <= 1; ++j)
+            for (int i = -1; i <= 1; ++i) {
+                const float there = at(px + i, py + j);
+                if (there >= limit) continue;
+                const float slope = std::max(0.0f, 1 / z - 1 / at(px - i, py - j));
+                if (kEdgeRatio / there > 1 / z + slope) front = std::min(front, there);
+            }
+        fronts_[index(px, py)] = front;
+    }
 }
 
 std::vector<Range> DepthPlane::around(const PixelWindow& tile, int reach) const {
@@ -296,7 +312,7 @@ MeetTile::MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeetin
 }
 
 Shift MeetTile::over_ground(BandRows& bands, int x, int y, const DepthPlane::Range& range) const {
-    const SkimmingRay ray{{bands, depth_, x, y}, ground_, std::min<double>(bands.end(x), range.farthest)};
+    const SkimmingRay ray{{bands, depth_, x, y, range.front}, ground_, std::min<double>(bands.end(x), range.farthest)};
     switch (how_) {
         case DepthMeeting::March:
             return skim(ray, range.nearest);
@@ -314,11 +330,11 @@ void MeetTile::row(BandRows& bands, int y, float* uv) const {
     const auto first =
         static_cast<std::size_t>((floor_block(y - window.y0) - floor_block(tile_.y0 - window.y0)) * range_columns_);
     for (int i = 0; i < tile_.width; ++i) {
-        const Ray ray{bands, depth_, tile_.x0 + i, y};
-        const Range range =
-            how_ == DepthMeeting::March
-                ? ranges_[first + static_cast<std::size_t>(floor_block(ray.x - window.x0) - first_column)]
-                : Range{depth_.nearest(), depth_.farthest()};
+        const int x = tile_.x0 + i;
+        const Range range = how_ == DepthMeeting::March
+                                ? ranges_[first + static_cast<std::size_t>(floor_block(x - window.x0) - first_column)]
+                                : Range{depth_.nearest(), depth_.farthest()};
+        const Ray ray{bands, depth_, x, y, range.front};
         Shift d;
         if (bands.mirage_moves(ray.x)) {
             d = over_ground(bands, ray.x, y, range);

@@ -8,7 +8,11 @@
 ///  - Own: D = the pixel's own depth.
 ///
 /// Depth is read at the pixel nearest to s, never filtered: a depth between foreground and background exists nowhere.
-/// Seen so, every pixel is a facet at its own depth. The march goes from facet to facet: in one leap to the depth of
+/// Seen so, every pixel is a facet at its own depth. The picture, though, is filtered, and an antialiased pixel beside
+/// an edge holds some of the foreground, whatever its depth says: a pixel is *fronted* by a neighbour that stands out
+/// before it, and a ray stops at the depth of that foreground, too, where a fronted pixel is among the four around s.
+/// So no sample of a cubic filter reads foreground for background, and edge pixels move as one with what they are the
+/// edge of. The march goes from facet to facet: in one leap to the depth of
 /// the one under the ray if the path stays upon it, else no farther than kMarchStep pixels; a point where it is blocked
 /// between is bisected to kMarchError.
 ///
@@ -18,6 +22,8 @@
 /// is where the ray ends, or the farthest one if it passes over the ground for good. Other rays meet ground as ever.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -32,15 +38,17 @@ inline constexpr int kFixedPointSteps = 8;
 inline constexpr float kMarchStep = 0.5f, kMarchError = 0.001f;
 /// A path that needs more steps than this, beyond any plausible warp, ends where they do.
 inline constexpr int kMostMarchSteps = 1024;
-/// A neighbour nearer than this part of the depth under the ray is an edge to stay clear of, not a slope.
-inline constexpr float kEdgeRatio = 0.5f;
+/// A pixel fronts its neighbour if it is nearer than this part of the neighbour's depth, and of where the plane through
+/// the neighbour and the pixel on its other side would be (inverse depths of a plane are linear in perspective).
+inline constexpr float kEdgeRatio = 0.8f;
 
 /// Axial depth of every pixel of a window, in metres, positive and finite; with block extrema for the march.
 class DepthPlane {
   public:
-    /// Extrema of depth.
+    /// Extrema of depth, and the nearest front.
     struct Range {
         float nearest, farthest;
+        float front = std::numeric_limits<float>::infinity();
     };
     static constexpr int kBlock = 8;
 
@@ -49,7 +57,9 @@ class DepthPlane {
 
     const PixelWindow& window() const { return window_; }
     /// Nearest pixel's depth; outside the window its nearest edge pixel's.
-    float at(int x, int y) const;
+    float at(int x, int y) const { return metres_[index(x, y)]; }
+    /// Depth of the nearest of the eight neighbours that fronts that pixel; infinite if none does.
+    float front(int x, int y) const { return fronts_[index(x, y)]; }
     float nearest() const { return all_.nearest; }
     float farthest() const { return all_.farthest; }
     /// Extrema around each block of kBlock² pixels, counted from the window's origin, that holds a pixel of `tile`:
@@ -57,8 +67,15 @@ class DepthPlane {
     std::vector<Range> around(const PixelWindow& tile, int reach) const;
 
   private:
+    std::size_t index(int x, int y) const {
+        const int cx = std::clamp(x - window_.x0, 0, window_.width - 1);
+        const int cy = std::clamp(y - window_.y0, 0, window_.height - 1);
+        return static_cast<std::size_t>(cy) * static_cast<std::size_t>(window_.width) + static_cast<std::size_t>(cx);
+    }
+    void find_fronts(int y);
+
     PixelWindow window_;
-    std::vector<float> metres_;
+    std::vector<float> metres_, fronts_;
     std::vector<Range> blocks_;
     int block_columns_ = 0, block_rows_ = 0;
     Range all_{};

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "noise/error.h"
 #include "warp/scene/scene.h"
 
 namespace eikonal {
@@ -37,6 +38,12 @@ struct DisplacerSettings {
     std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
     /// Media that move no pixel by more than this before any gain are left out [px] >= 0.
     double negligible = kNegligibleShift;
+    bool (*cancelled)() = nullptr;  ///< asked now and then; true ends the frame with a FrameError
 };
+
+/// FrameError if a run has been cancelled. Cheap beside a ray.
+inline void check_cancelled(bool (*cancelled)()) {
+    if (cancelled != nullptr && cancelled()) throw FrameError("interrupted");
+}
 
 }  // namespace eikonal

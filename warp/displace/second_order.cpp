@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "warp/displace/model.h"
+
 namespace eikonal {
 namespace {
 
@@ -89,6 +91,7 @@ class NodeRay {
 void SecondOrderInstant::fill(Band& band, const Camera& camera) const {
     for (int r = 0; r < band.rows; ++r)
         for (int c = 0; c < band.columns; ++c) {
+            check_cancelled(cancelled);
             NodeRay ray(field, straight_ray(camera, (band.column0 + c) * band.spacing + 0.5,
                                             (band.row0 + r) * band.spacing + 0.5));
             for (std::size_t k = 0; k < band.depths.size(); ++k) {

@@ -24,9 +24,10 @@ inline constexpr int kMostSteps = 20000;
 
 struct SecondOrderInstant {
     FieldInstant field;
-    double finest;  ///< smallest cell of the media [m]
+    double finest;                  ///< smallest cell of the media [m]
+    bool (*cancelled)() = nullptr;  ///< as DisplacerSettings
 
-    /// Adds X and S at every node and depth.
+    /// Adds X and S at every node and depth. FrameError once cancelled.
     void fill(Band& band, const Camera& camera) const;
 };
 

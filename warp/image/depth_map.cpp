@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "noise/error.h"
-#include "warp/image/plane.h"
 
 namespace eikonal {
 namespace {
@@ -27,6 +26,23 @@ double metres_of(double v, const DepthOptions& options) {
     }
     if (options.range) return (*options.range)[0] + v * ((*options.range)[1] - (*options.range)[0]);
     return v == 0 ? kBackground : v;
+}
+
+/// What is odd about stored values that are accepted.
+std::vector<Remark> remarks_on(const Plane& plane, const std::filesystem::path& file, const DepthOptions& options) {
+    const auto [lowest, highest] = finite_range(plane.values);
+    if (options.range) {
+        if (lowest >= 0 && highest <= 1) return {};
+        return {
+            {"depth_codes", fmt::format("'{}': channel '{}' holds values from {:g} to {:g}, but --depth-range is for "
+                                        "0 to 1; leave it out if they are metres",
+                                        file.string(), plane.channel, lowest, highest)}};
+    }
+    if (options.type == DepthType::Inverse) return {};
+    const auto zeros = std::count(plane.values.begin(), plane.values.end(), 0.0f);
+    if (zeros == 0) return {};
+    return {{"depth_zeros", fmt::format("'{}': {} of {} pixels are at 0 m and count as background, at --far {:g}",
+                                        file.string(), zeros, plane.values.size(), options.far)}};
 }
 
 }  // namespace
@@ -59,6 +75,7 @@ DepthBuffer depth_from_picture(const Picture& picture, const std::filesystem::pa
             std::any_of(plane.values.begin(), plane.values.end(), [](float v) { return std::isnan(v); }) ? " and NaN"
                                                                                                          : ""));
 
+    std::vector<Remark> remarks = remarks_on(plane, file, options);
     const auto far = static_cast<float>(std::min(options.far, static_cast<double>(kInfiniteDepth)));
     std::size_t negative = 0;
     for (float& value : plane.values) {
@@ -73,7 +90,7 @@ DepthBuffer depth_from_picture(const Picture& picture, const std::filesystem::pa
             fmt::format("'{}': channel '{}' has {} negative depth value{}; depth must be positive "
                         "(check --depth-type and --depth-range)",
                         file.string(), plane.channel, negative, negative == 1 ? "" : "s"));
-    return {data, options.type == DepthType::Ray, std::move(plane.values)};
+    return {data, options.type == DepthType::Ray, std::move(plane.values), std::move(remarks)};
 }
 
 DepthBuffer read_depth(const std::filesystem::path& file, const DepthOptions& options, const PixelWindow& data,

@@ -10,6 +10,8 @@
 /// inverse depth, zero metres in the other types without a range, and pixels outside the map's data window. Results are
 /// limited to kNearestDepth or more; so they are always finite and positive.
 ///
+/// Remarks: pixels of zero metres; with a range, floats outside 0…1, which lie beyond NEAR and FAR.
+///
 /// Errors. UserError: an unknown channel, integers without a range (a code is no length), a range that is not finite,
 /// negative, empty, or for inverse depth zero. FrameError: a negative depth (with the count), no depth at all (nothing
 /// but zeros and NaN), another size than the footage's, an unreadable file.
@@ -22,6 +24,7 @@
 #include <vector>
 
 #include "warp/image/picture.h"
+#include "warp/image/plane.h"
 
 namespace eikonal {
 
@@ -41,8 +44,9 @@ struct DepthOptions {
 /// Depth of every pixel of a window, finite and positive.
 struct DepthBuffer {
     PixelWindow window;
-    bool along_ray = false;     ///< metres along each pixel's ray rather than along the axis
-    std::vector<float> metres;  ///< window.area(), row by row
+    bool along_ray = false;       ///< metres along each pixel's ray rather than along the axis
+    std::vector<float> metres;    ///< window.area(), row by row
+    std::vector<Remark> remarks;  ///< about depth_zeros, depth_codes
 };
 
 /// Depth on the pixels `data` of footage whose display window is `display`.

@@ -27,9 +27,14 @@ void raise_flag(int) {
 
 void catch_interrupts(const char* program) {
     name = program;
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, raise_flag);
+    struct sigaction action {};
+    sigemptyset(&action.sa_mask);
+    // Without SA_RESTART: a read or write that would wait for ever ends.
+    action.sa_handler = raise_flag;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
     // A closed pipe and a file beyond the size limit are errors of the write that meets them.
-    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+    action.sa_handler = SIG_IGN;
+    for (const int signal : {SIGPIPE, SIGXFSZ}) sigaction(signal, &action, nullptr);
 }
 
 bool interrupted() {

@@ -1,5 +1,6 @@
-/// Ctrl-C and termination requests end a run between frames instead of within the writing of one. Shared by the
-/// programs; files that were begun are temporary ones (atomic_file.h), so that finished frames stay whole either way.
+/// Ctrl-C and termination requests end a run where its work asks for them, never within the writing of a file. Shared
+/// by the programs; files that were begun are temporary ones (atomic_file.h), so that finished frames stay whole either
+/// way.
 #pragma once
 
 namespace eikonal {

@@ -24,32 +24,34 @@ struct KnownEncoder {
     const char* name;
     Quality quality;
     double value;         ///< visually lossless crf or quantiser
+    double best, worst;   ///< range of that value; of Profile and Lossless, which have none, unused
     const char* options;  ///< "key=value,key=value"
 };
 
 /// Every codec that we write. libx264 goes without mbtree, whose fast code reads memory that was never set, so that its
 /// bytes differ from run to run.
 constexpr std::array kEncoders{
-    KnownEncoder{AV_CODEC_ID_H264, "libx264", Quality::Crf, 15, "preset=fast,x264-params=mbtree=0"},
-    KnownEncoder{AV_CODEC_ID_HEVC, "libx265", Quality::Crf, 15, "preset=fast,x265-params=log-level=none:pools=4"},
-    KnownEncoder{AV_CODEC_ID_VP9, "libvpx-vp9", Quality::Crf, 15, "deadline=good,cpu-used=4,row-mt=1"},
-    KnownEncoder{AV_CODEC_ID_VP8, "libvpx", Quality::Crf, 5, "deadline=good,cpu-used=2,b=100M"},
-    KnownEncoder{AV_CODEC_ID_AV1, "libaom-av1", Quality::Crf, 15, "cpu-used=6,row-mt=1"},
-    KnownEncoder{AV_CODEC_ID_MPEG4, "mpeg4", Quality::Quantiser, 2, ""},
-    KnownEncoder{AV_CODEC_ID_MPEG2VIDEO, "mpeg2video", Quality::Quantiser, 2, ""},
-    KnownEncoder{AV_CODEC_ID_THEORA, "libtheora", Quality::Quantiser, 10, ""},
-    KnownEncoder{AV_CODEC_ID_MJPEG, "mjpeg", Quality::Quantiser, 2, "strict=unofficial"},
-    KnownEncoder{AV_CODEC_ID_PRORES, "prores_ks", Quality::Profile, 0, "vendor=apl0"},
-    KnownEncoder{AV_CODEC_ID_DNXHD, "dnxhd", Quality::Profile, 0, ""},
-    KnownEncoder{AV_CODEC_ID_FFV1, "ffv1", Quality::Lossless, 0, "level=3,slices=4,slicecrc=1"},
-    KnownEncoder{AV_CODEC_ID_FFVHUFF, "ffvhuff", Quality::Lossless, 0, ""},
-    KnownEncoder{AV_CODEC_ID_HUFFYUV, "huffyuv", Quality::Lossless, 0, ""},
-    KnownEncoder{AV_CODEC_ID_UTVIDEO, "utvideo", Quality::Lossless, 0, ""},
-    KnownEncoder{AV_CODEC_ID_MAGICYUV, "magicyuv", Quality::Lossless, 0, ""},
-    KnownEncoder{AV_CODEC_ID_QTRLE, "qtrle", Quality::Lossless, 0, ""},
-    KnownEncoder{AV_CODEC_ID_PNG, "png", Quality::Lossless, 0, ""},
-    KnownEncoder{AV_CODEC_ID_V210, "v210", Quality::Lossless, 0, ""},
-    KnownEncoder{AV_CODEC_ID_RAWVIDEO, "rawvideo", Quality::Lossless, 0, ""},
+    KnownEncoder{AV_CODEC_ID_H264, "libx264", Quality::Crf, 15, 0, 51, "preset=fast,x264-params=mbtree=0"},
+    KnownEncoder{AV_CODEC_ID_HEVC, "libx265", Quality::Crf, 15, 0, 51,
+                 "preset=fast,x265-params=log-level=none:pools=4"},
+    KnownEncoder{AV_CODEC_ID_VP9, "libvpx-vp9", Quality::Crf, 15, 0, 63, "deadline=good,cpu-used=4,row-mt=1"},
+    KnownEncoder{AV_CODEC_ID_VP8, "libvpx", Quality::Crf, 5, 0, 63, "deadline=good,cpu-used=2,b=100M"},
+    KnownEncoder{AV_CODEC_ID_AV1, "libaom-av1", Quality::Crf, 15, 0, 63, "cpu-used=6,row-mt=1"},
+    KnownEncoder{AV_CODEC_ID_MPEG4, "mpeg4", Quality::Quantiser, 2, 1, 31, ""},
+    KnownEncoder{AV_CODEC_ID_MPEG2VIDEO, "mpeg2video", Quality::Quantiser, 2, 1, 31, ""},
+    KnownEncoder{AV_CODEC_ID_THEORA, "libtheora", Quality::Quantiser, 10, 10, 0, ""},
+    KnownEncoder{AV_CODEC_ID_MJPEG, "mjpeg", Quality::Quantiser, 2, 1, 31, "strict=unofficial"},
+    KnownEncoder{AV_CODEC_ID_PRORES, "prores_ks", Quality::Profile, 0, 0, 0, "vendor=apl0"},
+    KnownEncoder{AV_CODEC_ID_DNXHD, "dnxhd", Quality::Profile, 0, 0, 0, ""},
+    KnownEncoder{AV_CODEC_ID_FFV1, "ffv1", Quality::Lossless, 0, 0, 0, "level=3,slices=4,slicecrc=1"},
+    KnownEncoder{AV_CODEC_ID_FFVHUFF, "ffvhuff", Quality::Lossless, 0, 0, 0, ""},
+    KnownEncoder{AV_CODEC_ID_HUFFYUV, "huffyuv", Quality::Lossless, 0, 0, 0, ""},
+    KnownEncoder{AV_CODEC_ID_UTVIDEO, "utvideo", Quality::Lossless, 0, 0, 0, ""},
+    KnownEncoder{AV_CODEC_ID_MAGICYUV, "magicyuv", Quality::Lossless, 0, 0, 0, ""},
+    KnownEncoder{AV_CODEC_ID_QTRLE, "qtrle", Quality::Lossless, 0, 0, 0, ""},
+    KnownEncoder{AV_CODEC_ID_PNG, "png", Quality::Lossless, 0, 0, 0, ""},
+    KnownEncoder{AV_CODEC_ID_V210, "v210", Quality::Lossless, 0, 0, 0, ""},
+    KnownEncoder{AV_CODEC_ID_RAWVIDEO, "rawvideo", Quality::Lossless, 0, 0, 0, ""},
 };
 
 const KnownEncoder* find_known(AVCodecID codec) {
@@ -64,12 +66,41 @@ const KnownEncoder& find_named(const std::string& name) {
     std::string names;
     for (const KnownEncoder& known : kEncoders)
         names += std::string(names.empty() ? "" : ", ") + avcodec_get_name(known.codec);
-    throw UserError(fmt::format("codec \"{}\" is unknown; allowed: {}", name, names));
+    throw UserError(fmt::format("--codec: '{}' is unknown; allowed: {}", name, names));
+}
+
+/// The encoder that the user names, if the container can hold its codec.
+const KnownEncoder& find_allowed(const std::string& name, const AVOutputFormat* container,
+                                 const std::filesystem::path& path) {
+    const KnownEncoder& wanted = find_named(name);
+    if (avformat_query_codec(container, wanted.codec, FF_COMPLIANCE_NORMAL) != 0) return wanted;
+    std::string held, others;
+    for (const KnownEncoder& known : kEncoders)
+        if (accepts(container, known.codec))
+            held += (held.empty() ? "" : ", ") + std::string(avcodec_get_name(known.codec));
+    for (const char* other : {".mov", ".mkv"})
+        if (accepts(av_guess_format(nullptr, other, nullptr), wanted.codec))
+            others += (others.empty() ? "" : " or ") + std::string(other);
+    throw UserError(fmt::format("--codec {}: '{}' cannot hold it, {} holds {}; write {}", name, path.string(),
+                                path.extension().string(), held, others));
+}
+
+/// UserError: a quality that the codec does not have.
+void check_quality(const KnownEncoder& known, const MovieSettings& settings) {
+    if (!settings.quality) return;
+    const char* name = avcodec_get_name(known.codec);
+    if (known.best == known.worst)
+        throw UserError(fmt::format("--quality: {} {}; leave it out or name another --codec", name,
+                                    known.quality == Quality::Lossless ? "is lossless" : "has a quality of its own"));
+    if (*settings.quality < std::min(known.best, known.worst) || *settings.quality > std::max(known.best, known.worst))
+        throw UserError(fmt::format("--quality: {:g} is none of {}, which takes {:g} (best) to {:g}", *settings.quality,
+                                    name, known.best, known.worst));
 }
 
 /// Candidates, best first.
-std::vector<const KnownEncoder*> candidates(const EncoderRequest& request, const MovieSettings& settings) {
-    if (!settings.codec.empty()) return {&find_named(settings.codec)};
+std::vector<const KnownEncoder*> candidates(const EncoderRequest& request, const MovieSettings& settings,
+                                            const std::filesystem::path& path) {
+    if (!settings.codec.empty()) return {&find_allowed(settings.codec, request.container, path)};
     const MovieFormat& format = request.format;
     std::vector<AVCodecID> order{request.source_codec};
     if (std::string_view(request.container->name) == "avi") {
@@ -213,9 +244,10 @@ bool accepts(const AVOutputFormat* container, AVCodecID codec) {
 
 Encoder open_encoder(const EncoderRequest& request, const MovieSettings& settings, const std::filesystem::path& path) {
     std::string failures;
-    for (const KnownEncoder* known : candidates(request, settings)) {
+    for (const KnownEncoder* known : candidates(request, settings, path)) {
         const AVCodec* codec = avcodec_find_encoder_by_name(known->name);
         if (!codec) continue;
+        check_quality(*known, settings);
         Encoder encoder;
         encoder.stored = request.format;
         const AVPixelFormat pixel_format = choose_pixel_format(*codec, request.format, encoder);

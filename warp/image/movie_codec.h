@@ -33,7 +33,8 @@ const AVOutputFormat* find_container(const std::filesystem::path& path);
 /// True if `container` can hold streams of `codec`.
 bool accepts(const AVOutputFormat* container, AVCodecID codec);
 
-/// Opens the best encoder; `path` is for messages. UserError: unknown codec. FrameError: none can be opened.
+/// Opens the best encoder; `path` is for messages. UserError: unknown codec or one that the
+/// container cannot hold, a quality that it does not have. FrameError: none can be opened.
 Encoder open_encoder(const EncoderRequest& request, const MovieSettings& settings, const std::filesystem::path& path);
 
 }  // namespace eikonal::libav

@@ -280,6 +280,9 @@ int MovieReader::rotation() const {
 bool MovieReader::interlaced() const {
     return state_->interlaced;
 }
+bool MovieReader::at_end() const {
+    return state_->finished && !state_->pending && state_->early.empty();
+}
 int MovieReader::next_number() const {
     return state_->pending ? state_->number - static_cast<int>(state_->early.size()) : state_->number + 1;
 }

@@ -52,6 +52,8 @@ class MovieReader {
     bool next(MovieFrame& frame);
     /// Passes over one frame, decoded but not converted; false at the end. Damaged frames are passed over silently.
     bool skip();
+    /// Whether nothing can follow: next() has returned false or told that the movie is cut off.
+    bool at_end() const;
     /// Number of the frame that next() will return.
     int next_number() const;
 

@@ -11,8 +11,8 @@
 /// The file appears under its name when finish() has returned; until then, and after any error, there is none.
 /// Memory does not grow with the movie: copied streams are read in step with the frames.
 ///
-/// Failures: UserError (unknown container or codec, output equal to input), FrameError (cannot be written, disk full).
-/// One writer is used by one thread at a time.
+/// Failures: UserError (unknown container, codec or quality, output equal to input), FrameError (cannot be written,
+/// disk full). One writer is used by one thread at a time.
 #pragma once
 
 #include <filesystem>
@@ -30,7 +30,7 @@ namespace eikonal {
 struct MovieSettings {
     std::string codec;  ///< libav's name of a codec or encoder ("hevc", "prores_ks"); empty: chosen as above
     std::optional<double>
-        quality;  ///< crf, or quantiser of mpeg4, mpeg2video, mjpeg; lower is better; lossless: unused
+        quality;  ///< crf, or quantiser of mpeg4, mpeg2video, mjpeg: lower is better; theora's: higher is
     /// Numbers of the source's frames that will be written, ascending; empty: all. A part in one piece starts at time 0
     /// with its own stretch of the copied streams; a part with gaps plays its frames one after the other, alone.
     std::vector<int> frames;

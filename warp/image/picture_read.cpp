@@ -16,16 +16,26 @@ namespace eikonal {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr const char* kTruncated = "the file is truncated; copy it again";
+
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
     throw FrameError(fmt::format("cannot read '{}': {}", path.string(), reason));
+}
+
+/// Why the library cannot read the file: what it says of files that end too early differs from format to format.
+[[noreturn]] void refuse_content(const fs::path& path, const std::string& said, std::string_view fallback) {
+    for (const char* end : {"end of file", "premature end", "Read error at scanline", "incomplete"})
+        if (OIIO::Strutil::icontains(said, end)) refuse(path, kTruncated);
+    refuse(path, one_line(said, fallback) + "; it may be damaged or another kind of file");
 }
 
 void check_file(const fs::path& path) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) refuse(path, "no such file");
-    if (fs::is_directory(status)) refuse(path, "it is a folder");
-    if (fs::is_regular_file(status) && fs::file_size(path, error) == 0) refuse(path, "the file is empty (0 bytes)");
+    if (!fs::exists(status)) refuse(path, "no such file; check the name");
+    if (fs::is_directory(status)) refuse(path, "it is a folder; name a file in it");
+    if (!fs::is_regular_file(status)) refuse(path, "it is not a regular file; name a picture on a disk");
+    if (fs::file_size(path, error) == 0) refuse(path, "the file is empty (0 bytes); copy it again");
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file) refuse(path, last_system_error());
 }
@@ -83,15 +93,15 @@ void check_kind(const fs::path& path, const OIIO::ImageSpec& spec) {
 
 Picture read(const fs::path& path, bool with_pixels) {
     check_file(path);
-    if (!png_is_whole(path)) refuse(path, "the file is truncated");
+    if (!png_is_whole(path)) refuse(path, kTruncated);
     OIIO::ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;  // raw codes; load_group premultiplies in linear light
     const auto input = OIIO::ImageInput::open(path.string(), &hints);
-    if (!input) refuse(path, one_line(OIIO::geterror(), "not an image file"));
+    if (!input) refuse_content(path, OIIO::geterror(), "not an image file");
 
     Picture picture;
     picture.format = input->format_name();
-    if (with_pixels && picture.format == "jpeg" && !jpeg_is_whole(path)) refuse(path, "the file is truncated");
+    if (with_pixels && picture.format == "jpeg" && !jpeg_is_whole(path)) refuse(path, kTruncated);
     for (int index = 0; input->seek_subimage(index, 0); ++index) {
         Part& part = picture.parts.emplace_back();
         part.spec = input->spec();
@@ -105,9 +115,9 @@ Picture read(const fs::path& path, bool with_pixels) {
         if (!with_pixels) continue;
         part.pixels.resize(part.spec.image_bytes(true));
         if (!input->read_image(index, 0, 0, part.spec.nchannels, OIIO::TypeDesc::UNKNOWN, part.pixels.data()))
-            refuse(path, one_line(input->geterror(), "the pixels are unreadable; is the file truncated?"));
+            refuse_content(path, input->geterror(), "the pixels are unreadable");
     }
-    if (picture.parts.empty()) refuse(path, one_line(input->geterror(), "it holds no picture"));
+    if (picture.parts.empty()) refuse_content(path, input->geterror(), "it holds no picture");
     input->close();
     return picture;
 }

@@ -2,7 +2,9 @@
 #include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "noise/error.h"
 #include "warp/image/atomic_file.h"
@@ -47,12 +49,29 @@ void write_parts(OIIO::ImageOutput& output, const std::string& name, const fs::p
     if (!output.close()) refuse(path, reason(output, name, path, "closing failed"));
 }
 
-/// Formats that do not write through a proxy hide errors; reading the file back shows them.
-void verify(const fs::path& temporary, const fs::path& path) {
+/// Why no more can be written to the end of a file, from the system; empty if more can.
+std::string growth_error(const fs::path& file) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "ab"), std::fclose);
+    const std::vector<char> block(std::size_t{1} << 20);
+    errno = 0;
+    const bool grows = stream && std::fwrite(block.data(), 1, block.size(), stream.get()) == block.size() &&
+                       std::fflush(stream.get()) == 0;
+    return grows ? "" : last_system_error();
+}
+
+/// Formats that do not write through a proxy hide errors, or tell them without the system's reason; reading the file
+/// back shows the ones, trying to write more the others.
+void write_and_verify(OIIO::ImageOutput& output, const fs::path& temporary, const fs::path& path,
+                      const Picture& picture) {
+    bool written = false;
     try {
+        write_parts(output, temporary.string(), path, picture);
+        written = true;
         read_picture(temporary);
     } catch (const FrameError&) {
-        refuse(path, "it did not reach the disk whole; is the disk full?");
+        if (const std::string full = growth_error(temporary); !full.empty()) refuse(path, full);
+        if (written) refuse(path, "it did not reach the disk whole");
+        throw;
     }
 }
 
@@ -68,6 +87,7 @@ void write_picture(const fs::path& path, const Picture& picture) {
     if (picture.parts.empty()) refuse(path, "there is nothing to write");
     AtomicFile file(path);
     const std::string name = file.temporary().string();
+    std::optional<CheckedOutput> checked;  // outlives the output, which may still write when it is destroyed
     const auto output = OIIO::ImageOutput::create(name);
     if (!output) {
         OIIO::geterror();  // clears the thread's message, which names the temporary
@@ -75,13 +95,17 @@ void write_picture(const fs::path& path, const Picture& picture) {
     }
     // OpenImageIO's TIFF writer goes back to its directories by reading, which it cannot do through a proxy.
     if (output->supports("ioproxy") && std::string_view(output->format_name()) != "tiff") {
-        CheckedOutput checked(file.temporary(), path);
-        output->set_ioproxy(&checked);
-        write_parts(*output, name, path, picture);
-        checked.finish();
+        checked.emplace(file.temporary(), path);
+        output->set_ioproxy(&*checked);
+        try {
+            write_parts(*output, name, path, picture);
+        } catch (const FrameError&) {
+            checked->finish();  // the system's reason, if there is one
+            throw;
+        }
+        checked->finish();
     } else {
-        write_parts(*output, name, path, picture);
-        verify(file.temporary(), path);
+        write_and_verify(*output, file.temporary(), path, picture);
     }
     file.commit();
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "noise/error.h"
@@ -70,6 +71,23 @@ std::string channel_list(const Picture& picture) {
     return list;
 }
 
+/// What is odd about a matte that is taken; `chosen`: by us, as the user has named none of the channels `all`.
+void add_remarks(const Plane& matte, const std::filesystem::path& file, bool chosen, const std::string& all,
+                 std::vector<Remark>& remarks) {
+    if (chosen && all != matte.channel)
+        remarks.push_back({"matte_channel",
+                           fmt::format("mask: channel '{}' of '{}', which has {}", matte.channel, file.string(), all),
+                           false});
+    const auto [lowest, highest] = finite_range(matte.values);
+    const auto strange =
+        std::count_if(matte.values.begin(), matte.values.end(), [](float v) { return !std::isfinite(v); });
+    if (lowest < 0 || highest > 1 || strange > 0)
+        remarks.push_back(
+            {"matte_codes",
+             fmt::format("'{}': the mask holds values from {:g} to {:g}{}; they are limited to 0 … 1", file.string(),
+                         lowest, highest, strange > 0 ? fmt::format(" and {} that are not finite", strange) : "")});
+}
+
 }  // namespace
 
 Plane take_plane(const Picture& picture, const std::filesystem::path& file, std::string_view channel,
@@ -85,10 +103,10 @@ Plane take_plane(const Picture& picture, const std::filesystem::path& file, std:
     }
     if (!place)
         throw UserError(fmt::format("'{}': {}; it has {}", file.string(),
-                                     channel.empty()
-                                         ? std::string("which channel to use is not clear, name it as FILE:CHANNEL")
-                                         : fmt::format("there is no channel '{}'", channel),
-                                     channel_list(picture)));
+                                    channel.empty()
+                                        ? std::string("which channel to use is not clear, name it as FILE:CHANNEL")
+                                        : fmt::format("there is no channel '{}'", channel),
+                                    channel_list(picture)));
 
     const Part& part = *place->part;
     const PixelWindow own = data_window(part), shown = display_window(part);
@@ -119,8 +137,19 @@ Plane take_plane(const Picture& picture, const std::filesystem::path& file, std:
     return plane;
 }
 
+std::array<float, 2> finite_range(std::span<const float> values) {
+    std::array<float, 2> range{};
+    bool any = false;
+    for (const float v : values) {
+        if (!std::isfinite(v)) continue;
+        range = any ? std::array{std::min(range[0], v), std::max(range[1], v)} : std::array{v, v};
+        any = true;
+    }
+    return range;
+}
+
 std::vector<float> read_matte(const std::filesystem::path& file, const std::string& channel, const PixelWindow& data,
-                              const PixelWindow& display) {
+                              const PixelWindow& display, std::vector<Remark>* remarks) {
     const Picture picture = read_picture(file);
     std::string_view wanted = channel;
     if (channel.empty())
@@ -129,9 +158,10 @@ std::vector<float> read_matte(const std::filesystem::path& file, const std::stri
             if (std::any_of(values.begin(), values.end(), [](float v) { return v != 1; })) wanted = "A";
         }
     static constexpr std::array<std::string_view, 2> kNames = {"mask", "matte"};
-    std::vector<float> matte = take_plane(picture, file, wanted, kNames, data, display, 0).values;
-    for (float& v : matte) v = v > 0 ? std::min(v, 1.0f) : 0.0f;  // NaN too
-    return matte;
+    Plane plane = take_plane(picture, file, wanted, kNames, data, display, 0);
+    if (remarks != nullptr) add_remarks(plane, file, channel.empty(), channel_list(picture), *remarks);
+    for (float& v : plane.values) v = v > 0 ? std::min(v, 1.0f) : 0.0f;  // NaN too
+    return std::move(plane.values);
 }
 
 }  // namespace eikonal

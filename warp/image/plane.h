@@ -1,6 +1,7 @@
 /// One channel of a picture as numbers on the footage's pixels: what depth maps and mattes have in common.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -19,6 +20,16 @@ struct Plane {
     bool integer = false;       ///< the file stores integers
 };
 
+/// What the user should know of a file that is read all the same, to be told once a run for each `about`.
+struct Remark {
+    std::string_view about;  ///< a literal
+    std::string text;
+    bool warning = true;  ///< else of interest only to who asks
+};
+
+/// Least and greatest of the finite values; {0, 0} if there is none.
+std::array<float, 2> finite_range(std::span<const float> values);
+
 /// Finds `channel` in the parts of a picture (exact, then ignoring case; also as PART.CHANNEL) and lays it over the
 /// pixels `data` of footage whose display window is `display`. The picture's display window must have the footage's
 /// size, or its pixels the size of `data`; what its own data window lacks is `outside`.
@@ -31,8 +42,9 @@ Plane take_plane(const Picture& picture, const std::filesystem::path& file, std:
                  float outside);
 
 /// A matte from a file on the same terms: channel given, or alpha unless it is 1 everywhere, or the grey picture.
-/// Values limited to 0…1, NaN and pixels the file lacks are 0.
+/// Values limited to 0…1, NaN and pixels the file lacks are 0. Remarks: matte_codes, values outside 0…1 or NaN;
+/// matte_channel, which of several is taken (no warning); they are added to `remarks`, if there is such.
 std::vector<float> read_matte(const std::filesystem::path& file, const std::string& channel, const PixelWindow& data,
-                              const PixelWindow& display);
+                              const PixelWindow& display, std::vector<Remark>* remarks = nullptr);
 
 }  // namespace eikonal

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void refuse(std::string_view text, std::string_view reason) {
-    throw UserError(
-        fmt::format("frames '{}': {}; write 1001-1100, 1-9x2, 1-9:2, -5--1 or a list such as 1,5,10-20", text, reason));
+    throw UserError(fmt::format("--frames '{}': {}; write 1001-1100, 1-9x2, 1-9:2, -5--1 or a list such as 1,5,10-20",
+                                text, reason));
 }
 
 /// Takes an integer off the front of `rest`.

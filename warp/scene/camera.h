@@ -72,6 +72,8 @@ class CameraPath {
     Camera at(double frame) const;
     /// The camera that fixes the shot's frame of reference for thin screens: at the first key, or the constant one.
     Camera reference() const { return keys_.empty() ? base_ : at(keys_.front().frame); }
+    /// First and last frame of the .chan file, which must be there.
+    std::array<double, 2> frames() const { return {keys_.front().frame, keys_.back().frame}; }
     /// Whether there is a .chan file.
     bool moving() const { return !keys_.empty(); }
 

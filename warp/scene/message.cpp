@@ -49,7 +49,7 @@ std::string_view nearest(std::string_view name, std::span<const std::string_view
     int fewest = 0;
     for (const std::string_view v : valid) {
         const int edits = edit_distance(name, v);
-        const int similar = static_cast<int>(std::max(name.size(), v.size()) + 1) / 2;
+        const int similar = std::max(1, static_cast<int>(std::max(name.size(), v.size())) / 3);
         if (edits <= similar && (best.empty() || edits < fewest)) {
             best = v;
             fewest = edits;

@@ -176,9 +176,15 @@ void read_table(const Entry& entry, const std::vector<Key>& keys) {
         if (std::any_of(keys.begin(), keys.end(), has_name)) continue;
         std::vector<std::string_view> valid;
         for (const Key& key : keys) valid.push_back(key.name_);
-        const std::string where = entry.name.empty() ? "" : " in " + entry.name;
-        throw UserError(printable(fmt::format("{}: unknown key '{}'{}{}", place(name.source(), entry.file),
-                                              shortened(name.str()), where, suggestion(name.str(), valid))));
+        const std::string key = shortened(name.str());
+        const bool typed = std::find(valid.begin(), valid.end(), "type") != valid.end();  // a medium
+        const std::string type = typed ? (*table)["type"].value_or(std::string()) : "";
+        const std::string wrong = !type.empty()
+                                      ? fmt::format("{} of type \"{}\" has no key '{}'", entry.name, type, key)
+                                  : entry.name.empty() ? fmt::format("unknown key '{}'", key)
+                                                       : fmt::format("unknown key '{}' in {}", key, entry.name);
+        throw UserError(
+            printable(fmt::format("{}: {}{}", place(name.source(), entry.file), wrong, suggestion(name.str(), valid))));
     }
     const auto entry_of = [&](const Key& key, const toml::node& node) {
         return entry.member(key.name_, node, key.meaning_);

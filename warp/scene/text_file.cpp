@@ -14,7 +14,11 @@ std::string read_text(const std::filesystem::path& file, const char* kind) {
     const auto refuse = [&](const std::string& reason) {
         throw UserError(fmt::format("{}: cannot read the {}: {}", file.string(), kind, reason));
     };
-    if (std::error_code ignored; std::filesystem::is_directory(file, ignored)) refuse("it is a folder");
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+    if (std::filesystem::is_directory(status)) refuse("it is a folder");
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        refuse("it is not a regular file");
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
     if (!stream) refuse(std::generic_category().message(errno ? errno : ENOENT));

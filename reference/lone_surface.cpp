@@ -1,0 +1,60 @@
+#include "reference/lone_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "noise/portable_math.h"
+#include "noise/ways.h"
+
+namespace eikonal::reference {
+namespace {
+
+/// Of the dropoff: the least change of height for the closed form. Its cancellation goes with the inverse square.
+constexpr double kLeastChange = 0.02;
+/// A straight ray that ends on the surface may be below it by rounding: in dropoffs.
+constexpr double kBelow = 1e-6;
+
+}  // namespace
+
+LoneSurface::LoneSurface(const SurfaceSpec& spec, const OpticsSpec& optics)
+    : layer_(spec, index_law(optics)),
+      law_(index_law(optics)),
+      equation_(optics.ray_equation),
+      exaggeration_(optics.exaggeration) {
+    const double n = 1 + law_.ambient() + std::abs(exaggeration_ * layer_.above_ambient(0));
+    largest_force_ = std::abs(force_strength(optics)) * layer_.largest_slope() * n;
+}
+
+/// Above the knee |n'| falls as e^{-h/d0} at least.
+double LoneSurface::quiet_height(double force) const {
+    const double ratio = largest_force_ / force;
+    if (!(ratio > 1)) return 0;
+    return std::min(layer_.top(), layer_.knee() + layer_.dropoff() * portable::log(ratio));
+}
+
+double LoneSurface::clear_way(const dvec3& x, const dvec3& d, double top) const {
+    const double above = layer_.height(x) - top;
+    return above > kTouch * top ? way_to_plane(above, layer_.climb(d)) : 0;
+}
+
+LoneSurface::AtHeight LoneSurface::at(double h) const {
+    const double A = exaggeration_ * law_.refractivity * law_.T0, Ta = law_.ambient_temperature;
+    const double excess = layer_.above_ambient(h), q = exaggeration_ * excess;
+    // T_a/T = 1 + T_a q/A
+    const double logarithm = -portable::log(1 + Ta * excess / (law_.refractivity * law_.T0));
+    const double scale = A * layer_.dropoff() / Ta, Q = scale * logarithm;
+    if (equation_ == RayEquation::Paper) return {0.5 * q, 0.5 * Q};
+    const double n = 1 + law_.ambient();
+    return {n * q + 0.5 * q * q, n * Q - 0.5 * scale * (A * logarithm / Ta + q)};
+}
+
+std::optional<dvec3> LoneSurface::pull(const dvec3& x, const dvec3& d, double distance) const {
+    const double c = layer_.climb(d), h0 = layer_.height(x), h1 = h0 + c * distance;
+    const double below = -kBelow * layer_.dropoff();
+    if (!(h0 >= 0 && h1 >= below && std::abs(h1 - h0) >= kLeastChange * layer_.dropoff())) return {};
+    if (!(1 + law_.ambient() + std::min(0.0, exaggeration_ * layer_.above_ambient(0)) > 0.25)) return {};
+    const AtHeight start = at(h0), end = at(std::max(h1, 0.0));
+    return ((end.P - start.P) / c - distance * start.g) / c * layer_.normal();
+}
+
+}  // namespace eikonal::reference

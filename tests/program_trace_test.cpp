@@ -1,0 +1,223 @@
+/// Black-box tests of `eikonal-trace`: exit statuses, one-line messages that name what is wrong, and what it writes.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <sstream>
+#include <thread>
+
+#include "tests/program_run.h"
+
+namespace program_test {
+namespace {
+
+class Trace : public Program {
+  protected:
+    Ended trace(Words words) const {
+        words.insert(words.begin(), EIKONAL_TRACE_PROGRAM);
+        return tool(std::move(words));
+    }
+    Ended render(Words words) const {
+        words.insert(words.begin(), "render");
+        return trace(std::move(words));
+    }
+    /// Expects this status and one line that has all the fragments.
+    void refuses(const Ended& ended, int status, std::initializer_list<std::string> fragments) const {
+        EXPECT_EQ(ended.status, status) << ended.err;
+        EXPECT_EQ(ended.lines().size(), 1u) << ended.err;
+        EXPECT_TRUE(ended.err.starts_with("eikonal-trace: ")) << ended.err;
+        for (const std::string& fragment : fragments)
+            EXPECT_NE(ended.err.find(fragment), std::string::npos) << "no \"" << fragment << "\" in: " << ended.err;
+        EXPECT_EQ(ended.out, "");
+    }
+    /// A wall behind what `more` says.
+    void wall(const std::string& more = "") const {
+        write_text("scene.toml", "[camera]\nresolution = [32, 24]\n" + more +
+                                     "\n[[object]]\nname = \"wall\"\nshape = \"quad\"\norigin = [0, 0, -20]\n"
+                                     "normal = [0, 0, 1]\nsize = [50, 50]\n");
+    }
+};
+
+const std::string kSurface = "[[medium]]\ntype = \"surface\"\norigin = [0, -1, 0]\nsurface_temperature = 330\n";
+const std::string kBlob =
+    "[[medium]]\ntype = \"blobs\"\nblob = [{center = [0, 0, -5], sigma = 0.5, temperature = 900}]\n";
+
+TEST_F(Trace, RendersEveryChannel) {
+    wall(kBlob);
+    const Ended ended = render({"scene.toml", "-o", "a.exr", "--samples", "1", "--magnification"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(names(), (Words{"a.exr", "scene.toml"}));
+    const Pixels picture = read("a.exr");
+    for (const char* name : {"R", "G", "B", "A", "Z", "length", "u", "v", "id", "steps", "error", "magnification"})
+        EXPECT_NE(std::find(picture.spec.channelnames.begin(), picture.spec.channelnames.end(), name),
+                  picture.spec.channelnames.end())
+            << name;
+    for (const float value : picture.values) ASSERT_TRUE(std::isfinite(value));
+    EXPECT_NE(ended.err.find("folded"), std::string::npos);
+}
+
+TEST_F(Trace, HelpAndVersion) {
+    for (const Words& words : {Words{"--help"}, {"render", "--help"}, {"path", "--help"}, {"--version"}}) {
+        const Ended ended = trace(words);
+        EXPECT_EQ(ended.status, 0) << ended.err;
+        EXPECT_EQ(ended.err, "");
+        EXPECT_NE(ended.out.find("eikonal-trace"), std::string::npos);
+    }
+    refuses(trace({}), 2, {"subcommand"});
+}
+
+TEST_F(Trace, WrongWordsAreNamed) {
+    wall(kSurface);
+    refuses(render({"scene.toml", "-o", "a.exr", "--integrator", "adaptiv"}), 2,
+            {"--integrator", "adaptiv", "first-order", "did you mean"});
+    refuses(render({"scene.toml", "-o", "a.png"}), 2, {"a.png", ".exr"});
+    refuses(render({"scene.toml"}), 2, {"--output"});
+    refuses(render({"none.toml", "-o", "a.exr"}), 2, {"none.toml"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--samples", "0"}), 2, {"--samples"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--tolerance", "nan"}), 2, {"--tolerance"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--frames", "1-3"}), 2, {"a.exr", "####"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--straight", "--magnification"}), 2, {"--straight"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--magnification", "--integrator", "first-order"}), 2,
+            {"--magnification", "first-order", "adaptive"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--set", "camera.resolutio=[2,2]"}), 2, {"resolutio"});
+    EXPECT_EQ(names(), Words{"scene.toml"});
+}
+
+TEST_F(Trace, ScenesThatCannotBeRenderedSayWhy) {
+    write_text("scene.toml", "[camera]\nresolution = [32, 24]\n");
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml", "[[object]]"});
+    const auto object = [&](const std::string& text) { write_text("scene.toml", "[[object]]\n" + text); };
+    object("shape = \"mesh\"\nfile = \"none.obj\"\n");
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"none.obj"});
+    object("shape = \"mesh\"\nfile = \"bad.obj\"\n");
+    for (const char* text :
+         {"", "rubbish\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}) {
+        write_text("bad.obj", text);
+        refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"bad.obj"});
+    }
+    object("texture = \"none.png\"\n");
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"none.png"});
+    write_text("bad.png", "no picture");
+    object("texture = \"bad.png\"\n");
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"bad.png"});
+    for (const char* integrator : {"layers", "mirror"}) {
+        wall(kBlob);
+        refuses(render({"scene.toml", "-o", "a.exr", "--integrator", integrator}), 2, {"surface"});
+    }
+    EXPECT_FALSE(fs::exists(path("a.exr")));
+}
+
+TEST_F(Trace, DegenerateTrianglesAreLeftOut) {
+    write_text("mesh.obj", "v -9 -9 -5\nv 9 -9 -5\nv 0 9 -5\nv 0 0 -5\nf 1 2 3\nf 1 1 2\nf 4 4 4\n");
+    write_text("scene.toml", "[camera]\nresolution = [32, 24]\n[[object]]\nshape = \"mesh\"\nfile = \"mesh.obj\"\n");
+    EXPECT_EQ(render({"scene.toml", "-o", "a.exr", "--samples", "1"}).status, 0);
+    const Pixels picture = read("a.exr");
+    EXPECT_NEAR(picture.at(16, 12, picture.channel("Z")), 5, 1e-5);
+}
+
+TEST_F(Trace, ACameraWithinASphereIsPointedOut) {
+    write_text("scene.toml",
+               "[camera]\nresolution = [32, 24]\n[[object]]\nname = \"dome\"\nshape = \"sphere\"\nradius = 30\n");
+    const Ended ended = render({"scene.toml", "-o", "a.exr", "--samples", "1"});
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_NE(ended.err.find("warning: the camera is inside object.0 \"dome\""), std::string::npos) << ended.err;
+}
+
+TEST_F(Trace, RaysWithoutIndexAreReportedAndBlack) {
+    wall("[[medium]]\ntype = \"profile\"\nprofile = \"linear\"\nn0 = 1\nslope = -0.5\ncenter = [0, -2, 0]\n");
+    const Ended ended = render({"scene.toml", "-o", "a.exr", "--samples", "1"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_NE(ended.err.find("n <= 0"), std::string::npos) << ended.err;
+    for (const float value : read("a.exr").values) ASSERT_FALSE(std::isnan(value));
+    wall("[[medium]]\ntype = \"profile\"\nprofile = \"fish-eye\"\n");
+    const Ended few = render({"scene.toml", "-o", "b.exr", "--samples", "1", "--step-budget", "10"});
+    EXPECT_EQ(few.status, 0) << few.err;
+    EXPECT_NE(few.err.find("--step-budget"), std::string::npos) << few.err;
+}
+
+TEST_F(Trace, FinishedFramesAreKeptAndSequencesWritten) {
+    wall(kBlob);
+    const Words sequence{"scene.toml", "-o", "f.####.exr", "--frames", "1-3,7", "--samples", "1"};
+    EXPECT_EQ(render(sequence).status, 0);
+    EXPECT_EQ(names(), (Words{"f.0001.exr", "f.0002.exr", "f.0003.exr", "f.0007.exr", "scene.toml"}));
+    write_text("f.0002.exr", "kept");
+    const Ended again = render(sequence);
+    EXPECT_EQ(again.status, 0);
+    EXPECT_NE(again.err.find("--overwrite"), std::string::npos);
+    EXPECT_EQ(bytes("f.0002.exr"), "kept");
+    Words anew = sequence;
+    anew.push_back("--overwrite");
+    EXPECT_EQ(render(anew).status, 0);
+    EXPECT_NE(bytes("f.0002.exr"), "kept");
+}
+
+TEST_F(Trace, SameBytesForAnyNumberOfThreads) {
+    wall(kBlob);
+    for (const char* n : {"1", "2", "5"})
+        EXPECT_EQ(render({"scene.toml", "-o", std::string(n) + ".exr", "--threads", n, "--samples", "4"}).status, 0);
+    EXPECT_EQ(bytes("1.exr"), bytes("2.exr"));
+    EXPECT_EQ(bytes("1.exr"), bytes("5.exr"));
+}
+
+TEST_F(Trace, OutputThatCannotBeWrittenFailsTheFrame) {
+    wall(kBlob);
+    refuses(render({"scene.toml", "-o", "none/a.exr"}), 1, {"none", "frame 1"});
+    refuses(trace({"path", "scene.toml", "--origin", "0,0,0", "--direction", "0,0,-1", "--length", "5", "-o",
+                   "none/a.csv"}),
+            1, {"none"});
+}
+
+TEST_F(Trace, AnInterruptLeavesNothingUnfinished) {
+    wall(kBlob);
+    const pid_t process = start_tool({EIKONAL_TRACE_PROGRAM, "render", "scene.toml", "-o", "a.exr", "--samples", "256",
+                                      "--set", "camera.resolution=[640,480]"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    ::kill(process, SIGINT);
+    const Ended ended = finish(process);
+    EXPECT_GT(ended.status, 0) << "not killed by the signal itself";
+    EXPECT_EQ(names(), Words{"scene.toml"});
+}
+
+// n² = 1 + z (PHYSICS 8): started along x where z = 0, x = u and z = u²/4.
+TEST_F(Trace, PathIsTheParabola) {
+    write_text("scene.toml",
+               "[[medium]]\ntype = \"profile\"\nprofile = \"linear-squared\"\nslope = 1\naxis = [0, 0, 1]\n");
+    const Words words{"path", "scene.toml", "--origin", "0,0,0", "--direction", "3,0,0", "--length", "4"};
+    const Ended printed = trace(words);
+    EXPECT_EQ(printed.status, 0) << printed.err;
+    std::istringstream lines(printed.out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "u,x,y,z,px,py,pz");
+    int rows = 0;
+    double u = 0;
+    while (std::getline(lines, line)) {
+        ++rows;
+        double v[7];
+        ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf", v, v + 1, v + 2, v + 3, v + 4, v + 5, v + 6),
+                  7);
+        u = v[0];
+        EXPECT_NEAR(v[1], u, 1e-9);
+        EXPECT_NEAR(v[2], 0, 1e-9);
+        EXPECT_NEAR(v[3], v[1] * v[1] / 4, 1e-9);
+        EXPECT_NEAR(v[4], 1, 1e-9);
+        EXPECT_NEAR(v[6], u / 2, 1e-9);
+    }
+    EXPECT_GT(rows, 10);
+    EXPECT_NEAR(u, 4, 1e-12);
+    Words file = words;
+    file.insert(file.end(), {"-o", "ray.csv"});
+    const Ended written = trace(file);
+    EXPECT_EQ(written.status, 0);
+    EXPECT_EQ(written.out, "");
+    EXPECT_EQ(bytes("ray.csv"), printed.out);
+    Words wrong = words;
+    wrong[5] = "0,0,0";
+    refuses(trace(wrong), 2, {"--direction", "zero"});
+    wrong[5] = "1,2";
+    refuses(trace(wrong), 2, {"--direction", "X,Y,Z"});
+}
+
+}  // namespace
+}  // namespace program_test
