@@ -47,7 +47,7 @@ void fill_node(Band& band, const FirstOrderInstant& model, const Medium& medium,
     const double scale = model.strength * ray.length * ray.length;
     for (std::size_t k = 0; k < band.depths.size(); ++k) {
         const double target = band.depths[k];
-        const double steps = std::max(1.0, std::ceil((target - z) * cells));
+        const double steps = std::clamp(std::ceil((target - z) * cells), 1.0, kMostFirstOrderSteps);
         const double h = (target - z) / steps;
         for (double i = 0; i < steps; ++i) {
             const double w = z + i * h;

@@ -28,6 +28,10 @@ inline constexpr double kFirstOrderError = 0.03;
 /// `spectral`.
 inline constexpr double kNyquistSlopes = 0.15;
 
+/// Steps of a ray at most: scenes that need more within the view of the first camera are refused (layers.h); what a
+/// camera turns to later is cut, a layer's steps to so many.
+inline constexpr double kMostFirstOrderSteps = 20000;
+
 /// A gradient-noise medium frozen at one time.
 struct GradientNoiseInstant {
     const GradientNoiseField* field;

@@ -28,8 +28,8 @@ constexpr int kMostFirstOrderDepths = 33;
 /// Instants over which the expected rms of blobs is taken.
 constexpr int kRmsInstants = 2;
 
-/// Steps of a first-order ray: beyond the first a frame takes minutes, beyond the second it is refused.
-constexpr double kManySteps = 2000, kMostSteps = 20000;
+/// Steps of a first-order ray beyond which it is warned that frames take long.
+constexpr double kManySteps = 2000;
 /// Steps that all rays of an estimate take together, about, and the fewest rays that it is taken from.
 constexpr double kRmsSteps = 256e3;
 constexpr int kFewestRmsRays = 32;
@@ -215,14 +215,18 @@ void MediaLayers::add_screens(std::size_t i, const TurbulenceSpec& spec) {
 }
 
 void MediaLayers::check_steps(std::size_t i, const dvec3& cell) {
-    const double steps = settings_.far * glm::length(reference_.forward / cell);
+    double most = 0;  // of the rays through the corners, the longest and most oblique
+    for (const double x : {0, settings_.width})
+        for (const double y : {0, settings_.height})
+            most = std::max(most, glm::length(straight_ray(reference_, x, y).direction / cell));
+    const double steps = settings_.far * most;
     if (!(steps > kManySteps)) return;
     const std::string what =
         fmt::format("medium.{}: first-order takes {:.0f} steps a ray, the path of {:g} m in cells of {:.3g} m", i,
-                    steps, settings_.far, settings_.far / steps);
+                    steps, settings_.far, 1 / most);
     const std::string remedy = "form=\"screens\", a shorter --far, or a longer period or inner_scale";
-    if (steps > kMostSteps)
-        throw UserError(fmt::format("{}; allowed are at most {:g}; use {}", what, kMostSteps, remedy));
+    if (steps > kMostFirstOrderSteps)
+        throw UserError(fmt::format("{}; allowed are at most {:g}; use {}", what, kMostFirstOrderSteps, remedy));
     warnings_.push_back(fmt::format("{}: frames take long; quicker are {}", what, remedy));
 }
 
