@@ -99,8 +99,8 @@ TEST_F(InterruptTest, StopsWithinAFrame) {
                      "--set",      "medium.0.form=gradient-noise",
                      "--set",      "medium.0.lattice=",
                      "--set",      "medium.0.period=",
-                     "--distance", "3000",
-                     "--far",      "3000",
+                     "--distance", "2400",
+                     "--far",      "2400",
                      "--threads",  "1"};
     for (const int signal : {SIGINT, SIGTERM}) {
         const pid_t process = start(slow);
