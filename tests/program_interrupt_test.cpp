@@ -99,8 +99,8 @@ TEST_F(InterruptTest, StopsWithinAFrame) {
                      "--set",      "medium.0.form=gradient-noise",
                      "--set",      "medium.0.lattice=",
                      "--set",      "medium.0.period=",
-                     "--distance", "2400",
-                     "--far",      "2400",
+                     "--distance", "290",
+                     "--far",      "290",
                      "--threads",  "1"};
     for (const int signal : {SIGINT, SIGTERM}) {
         const pid_t process = start(slow);
