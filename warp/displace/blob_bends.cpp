@@ -7,6 +7,7 @@
 
 #include "noise/blob_profile.h"
 #include "noise/dispatch.h"
+#include "noise/erf.h"
 #include "noise/portable_math.h"
 
 namespace eikonal {
@@ -17,7 +18,6 @@ constexpr double kLargestReach = 9;
 constexpr double kWholePass = 3.5449077018110318;  // 2√π
 constexpr double kSteepest = 0.42888194248035344;  // max t e^{-t²}, at t = 1/√2
 constexpr int kLastPixel = 1 << 29;
-constexpr float kWholeArea = 1.77245385F;  // √π
 
 /// t beyond which t e^{-t²} < level, 0 < level < kSteepest: fixed-point iteration of t = √ln(t/level).
 double tail_reach(double level) {
@@ -207,7 +207,7 @@ EIKONAL_CLONES void whole_integrals(const double* a, int n, float* e, float* g) 
     double latest = a[0];
     for (int i = 1; i < n; ++i) latest = a[i] > latest ? a[i] : latest;
     if (latest <= -kBlobAfar) {
-        std::fill(e, e + n, kWholeArea);
+        std::fill(e, e + n, static_cast<float>(portable::kSqrtPi));
         std::fill(g, g + n, 0.0f);
         return;
     }

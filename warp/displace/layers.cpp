@@ -370,12 +370,12 @@ double MediaLayers::expected_variance(const MediumLayer& layer, double D) const 
         const auto x1 = lattice->displacement_variance(rays.axis, D, rays.aperture);
         return strength2 * 0.5 * (1 + aspect2) * (x1[0] + x1[1]) * pixels * pixels;
     }
-    return sampled_variance(layer, D).shift;
+    return sampled_variance(layer, D, kRmsInstants).shift;
 }
 
 /// Over rays at random and their neighbours one pixel to the right or below, by turns; of blobs, which are dear to
-/// place, at kRmsInstants times.
-MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& layer, double D) const {
+/// place, at a few instants only, the first of them t = 0: a shot begins there, and finds its wind made.
+MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& layer, double D, int instants) const {
     const RandomStream stream(1, "expected rms");
     const auto draw = [&](int i, int c) { return stream.uniform(static_cast<std::uint64_t>(4 * i + c)); };
     const bool blobs = std::holds_alternative<BlobCloud>(layer.field);
@@ -387,8 +387,8 @@ MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& la
         check_cancelled(settings_.cancelled);
         const int x = static_cast<int>(draw(i, 0) * settings_.width),
                   y = static_cast<int>(draw(i, 1) * settings_.height);
-        if (!blobs || i % (rays / kRmsInstants) == 0)
-            instant = this->instant(layer, reference_, 1e3 * draw(i, 2), D, D, 1);
+        if (!blobs || i % (rays / instants) == 0)
+            instant = this->instant(layer, reference_, i == 0 ? 0 : 1e3 * draw(i, 2), D, D, 1);
         const bool across = i % 2 == 0;
         const PixelWindow pair{x, y, across ? 2 : 1, across ? 1 : 2};
         std::vector<Band> bands;
@@ -421,7 +421,7 @@ double MediaLayers::focusing_variance(const MediumLayer& layer, double D) const 
         const auto slope = lattice->focusing_variance(rays.axis, D, perspective(), rays.aperture);
         return strength2 * 0.5 * (slope[0] + slope[1]);
     }
-    return sampled_variance(layer, D).slope;
+    return sampled_variance(layer, D, 1).slope;
 }
 
 std::uint64_t MediaLayers::instant_bytes() const {

@@ -53,9 +53,6 @@ class MediaLayers {
     /// Heated or cooled surfaces and their index in Scene::media.
     const std::vector<std::pair<std::size_t, SurfaceSpec>>& surfaces() const { return surfaces_; }
     const IndexLaw& law() const { return law_; }
-    double strength() const { return strength_; }
-    const Camera& reference() const { return reference_; }
-    bool perspective() const { return reference_.projection == Projection::Perspective; }
 
     LayerInstant instant(const MediumLayer& layer, const Camera& camera, double t, double nearest, double farthest,
                          double gain) const;
@@ -73,6 +70,7 @@ class MediaLayers {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
+    bool perspective() const { return reference_.projection == Projection::Perspective; }
     void add(std::size_t i, const TurbulenceSpec& spec);
     void add(std::size_t i, const BlobsSpec& spec);
     void add(std::size_t i, const SurfaceSpec& spec);
@@ -92,7 +90,8 @@ class MediaLayers {
         double shift = 0;  ///< of |d| [px²]
         double slope = 0;  ///< of ∂d_x/∂x and ∂d_y/∂y, pixel to pixel
     };
-    SampledVariance sampled_variance(const MediumLayer& layer, double D) const;
+    /// instants: of blobs; other media take a time for each ray.
+    SampledVariance sampled_variance(const MediumLayer& layer, double D, int instants) const;
 
     const Scene& scene_;
     const DisplacerSettings& settings_;
