@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -214,8 +215,115 @@ TEST_F(Movie, OtherContainers) {
     }
     const auto warnings = pass_through(source, file("out.webm"));
     ASSERT_EQ(warnings.size(), 1U);
-    EXPECT_NE(warnings[0].find("audio stream 1 (aac) is dropped"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("audio stream 1 (aac) is coded again as opus"), std::string::npos) << warnings[0];
     EXPECT_EQ(codec(file("out.webm")).substr(0, 3), "vp9");
+}
+
+/// What a listener hears of a stream of 440 Hz between silences.
+struct Heard {
+    double length = 0;        ///< [s]
+    double from = 0, to = 0;  ///< of the tone [s]
+    double frequency = 0;     ///< [Hz]
+    double rms = 0;           ///< of its middle
+};
+
+Heard listen(const std::string& samples, double rate) {
+    std::vector<float> s(samples.size() / sizeof(float));
+    std::memcpy(s.data(), samples.data(), s.size() * sizeof(float));
+    Heard heard;
+    heard.length = static_cast<double>(s.size()) / rate;
+    const auto loud = [](float v) { return std::abs(v) > 0.2F; };
+    const auto first = std::find_if(s.begin(), s.end(), loud);
+    const auto last = std::find_if(s.rbegin(), s.rend(), loud).base();
+    if (first >= last) return heard;
+    heard.from = static_cast<double>(first - s.begin()) / rate;
+    heard.to = static_cast<double>(last - s.begin()) / rate;
+    const auto edge = (last - first) / 8;
+    double crossings = 0, power = 0;
+    for (auto i = first + edge; i < last - edge; ++i) {
+        crossings += i[0] < 0 && i[1] >= 0;
+        power += double{*i} * *i;
+    }
+    const auto count = static_cast<double>(last - first - 2 * edge);
+    heard.frequency = crossings * rate / count;
+    heard.rms = std::sqrt(power / count);
+    return heard;
+}
+
+// A tone of known pitch, place and length, through every pair of container and codec that is impossible.
+TEST_F(Movie, AudioThatTheContainerCannotHoldIsCodedAgain) {
+    constexpr double kRate = 48000, kFrame = 0.032;  // the longest packet: 1024 samples of AAC at 32 kHz
+    struct Case {
+        std::string source, codec, target, becomes, layout;
+        int channels, rate;
+    };
+    for (const Case& c : {Case{"a.mp4", "aac", "a.webm", "opus", "stereo", 2, 44100},
+                          {"b.mkv", "flac", "b.webm", "opus", "5.1", 6, 48000},
+                          {"c.mkv", "pcm_s24le", "c.mp4", "aac", "mono", 1, 32000},
+                          {"e.mkv", "flac", "e.mov", "aac", "stereo", 2, 48000},
+                          {"d.mkv", "pcm_s16le", "d.webm", "opus", "stereo", 2, 96000}}) {
+        SCOPED_TRACE(c.target);
+        std::string tone;
+        for (int i = 0; i < c.channels; ++i) tone += std::string(i ? "|" : "") + "0.5*between(t,0.4,1.3)*sin(880*PI*t)";
+        const fs::path source = make("-f lavfi -i testsrc2=size=96x64:rate=24 -f lavfi -i \"aevalsrc='" + tone +
+                                         "':s=" + std::to_string(c.rate) + ":c=" + c.layout +
+                                         "\" -t 1.7 -c:v libx264 -pix_fmt yuv420p -c:a " + c.codec,
+                                     c.source);
+        const auto warnings = pass_through(source, file(c.target));
+        ASSERT_EQ(warnings.size(), 1U);
+        EXPECT_NE(warnings[0].find("is coded again as " + c.becomes), std::string::npos) << warnings[0];
+        EXPECT_EQ(probe(file(c.target), "-select_streams a -show_entries stream=codec_name,channels -of csv=p=0"),
+                  c.becomes + ',' + std::to_string(c.channels) + '\n');
+        const auto samples = [&](const fs::path& path) {
+            return output_of("ffmpeg -nostdin -v error -i '" + path.string() +
+                             "' -map 0:a -af pan=mono\\|c0=c0 -ar 48000 -f f32le -");
+        };
+        const Heard before = listen(samples(source), kRate), after = listen(samples(file(c.target)), kRate);
+        EXPECT_NEAR(before.frequency, 440, 2);
+        EXPECT_NEAR(after.length, before.length, kFrame);
+        EXPECT_NEAR(after.from, before.from, 0.003);
+        EXPECT_NEAR(after.to, before.to, 0.003);
+        EXPECT_NEAR(after.frequency, before.frequency, 2);
+        EXPECT_NEAR(after.rms / before.rms, 1, 0.1);
+        EXPECT_EQ(time_stamps(file(c.target)).size(), time_stamps(source).size());
+        // picture and sound begin together: the encoder's delay moves neither
+        EXPECT_EQ(time_stamps(file(c.target)).front(), 0);
+
+        pass_through(source, file("again" + c.target));
+        EXPECT_TRUE(bytes(file(c.target)) == bytes(file("again" + c.target)));
+
+        // frames 13 to 36: from 0.5 to 1.5 s, the tone's start is cut off
+        MovieSettings part;
+        for (int i = 13; i <= 36; ++i) part.frames.push_back(i);
+        pass_through(source, file("part" + c.target), part);
+        const Heard piece = listen(samples(file("part" + c.target)), kRate);
+        EXPECT_NEAR(piece.length, 1, 2 * kFrame);
+        EXPECT_LT(piece.from, 0.003);
+        EXPECT_NEAR(piece.to, before.to - 0.5, 0.003);
+    }
+}
+
+// Two pieces of sound with nothing between them: the second stays in its place.
+TEST_F(Movie, GapsOfAudioThatIsCodedAgainBecomeSilence) {
+    const fs::path source = make(
+        "-f lavfi -i testsrc2=size=96x64:rate=24 -f lavfi -i sine=440:sample_rate=44100 -t 3 -c:v libx264 -pix_fmt "
+        "yuv420p -af \"aselect='not(between(t,0.5,2))',volume=6\" -c:a pcm_s16le",
+        "in.mkv");
+    pass_through(source, file("out.webm"));
+    const std::string samples =
+        output_of("ffmpeg -nostdin -v error -i '" + file("out.webm").string() + "' -map 0:a -ar 48000 -f f32le -");
+    EXPECT_NEAR(listen(samples, 48000).length, 3, 0.032);
+    const std::string second = samples.substr(48000 * sizeof(float));
+    EXPECT_NEAR(listen(second, 48000).from, 1, 0.03);
+}
+
+TEST_F(Movie, AudioIsDroppedWhereThereCanBeNone) {
+    const fs::path source =
+        make("-f lavfi -i testsrc2=size=96x64:rate=24 -f lavfi -i sine -t 0.2 -c:v libvpx -c:a libopus", "in.webm");
+    const auto warnings = pass_through(source, file("out.ivf"));
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("audio stream 1 (opus) is dropped, ivf files hold no audio"), std::string::npos)
+        << warnings[0];
 }
 
 TEST_F(Movie, DeepSourcesStayDeep) {

@@ -8,11 +8,13 @@
 #include <string_view>
 
 #include "noise/error.h"
-#include "warp/image/movie_codec.h"
 
 namespace eikonal::libav {
 
 namespace {
+
+/// Sound before a part of a movie that is decoded too, for codecs whose packets build on earlier ones [s].
+constexpr int kPreroll = 1;
 
 /// Tags that describe the old file, not its contents.
 bool stale(std::string_view key) {
@@ -43,6 +45,7 @@ bool can_hold(const AVOutputFormat& container, const AVCodecParameters& paramete
         container.codec_tag && av_codec_get_id(container.codec_tag, parameters.codec_tag) == parameters.codec_id;
     switch (parameters.codec_type) {
         case AVMEDIA_TYPE_AUDIO:
+            return holds_audio(container, parameters.codec_id);
         case AVMEDIA_TYPE_SUBTITLE: {
             const int answer = avformat_query_codec(&container, parameters.codec_id, FF_COMPLIANCE_NORMAL);
             return answer == 1 || answer == AVERROR_PATCHWELCOME;
@@ -55,6 +58,17 @@ bool can_hold(const AVOutputFormat& container, const AVCodecParameters& paramete
         default:
             return false;
     }
+}
+
+/// Of a stream that is copied.
+void copy_parameters(const AVStream& from, const AVOutputFormat& container, AVStream& to) {
+    if (avcodec_parameters_copy(to.codecpar, from.codecpar) < 0) throw std::bad_alloc();
+    unsigned tag = 0;
+    const bool known = container.codec_tag && av_codec_get_tag2(container.codec_tag, from.codecpar->codec_id, &tag);
+    if (!known || av_codec_get_id(container.codec_tag, from.codecpar->codec_tag) != from.codecpar->codec_id)
+        to.codecpar->codec_tag = 0;
+    to.time_base = from.time_base;
+    copy_side_data(from, to);
 }
 
 std::string name_stream(const AVStream& stream) {
@@ -109,23 +123,26 @@ void StreamCopier::add_streams(AVFormatContext& to, const Warn& warn) {
         AVStream* from = input_->streams[i];
         if (from == video_) continue;
         if (!can_hold(*to.oformat, *from->codecpar)) {
-            if (warn && !is_time_code(*from))
-                warn(fmt::format("{} is dropped, {} files cannot hold it; .mkv or the source's container may",
-                                 name_stream(*from), to.oformat->name));
-            continue;
+            std::string why = fmt::format("{} files cannot hold it", to.oformat->name);
+            if (from->codecpar->codec_type == AVMEDIA_TYPE_AUDIO)
+                targets_[i].coder = AudioTranscoder::open(*from, *to.oformat, why);
+            if (warn && targets_[i].coder)
+                warn(fmt::format("{} is coded again as {}, {}", name_stream(*from),
+                                 avcodec_get_name(targets_[i].coder->encoder().codec_id), why));
+            else if (warn && !is_time_code(*from))
+                warn(fmt::format("{} is dropped, {}; .mkv or the source's container may", name_stream(*from), why));
+            if (!targets_[i].coder) continue;
         }
         AVStream* stream = avformat_new_stream(&to, nullptr);
-        if (!stream || avcodec_parameters_copy(stream->codecpar, from->codecpar) < 0) throw std::bad_alloc();
-        unsigned tag = 0;
-        const bool known =
-            to.oformat->codec_tag && av_codec_get_tag2(to.oformat->codec_tag, from->codecpar->codec_id, &tag);
-        if (known && av_codec_get_id(to.oformat->codec_tag, from->codecpar->codec_tag) != from->codecpar->codec_id)
-            stream->codecpar->codec_tag = 0;
-        if (!known) stream->codecpar->codec_tag = 0;
-        stream->time_base = from->time_base;
+        if (!stream) throw std::bad_alloc();
+        if (const auto& coder = targets_[i].coder) {
+            if (avcodec_parameters_from_context(stream->codecpar, &coder->encoder()) < 0) throw std::bad_alloc();
+            stream->time_base = coder->encoder().time_base;
+        } else {
+            copy_parameters(*from, *to.oformat, *stream);
+        }
         stream->disposition = from->disposition;
         copy_metadata(from->metadata, &stream->metadata);
-        copy_side_data(*from, *stream);
         from->discard = AVDISCARD_DEFAULT;
         targets_[i].stream = stream;
     }
@@ -149,7 +166,9 @@ bool StreamCopier::wanted() const {
     if (index >= targets_.size() || !targets_[index].stream) return false;
     if (packet_->flags & AV_PKT_FLAG_CORRUPT) return false;
     if (!trim_ || packet_->pts == AV_NOPTS_VALUE) return true;
-    return av_compare_ts(packet_->pts, input_->streams[index]->time_base, origin_, origin_base_) >= 0;
+    const AVRational base = input_->streams[index]->time_base;
+    const std::int64_t early = targets_[index].coder ? av_rescale_q(kPreroll, AVRational{1, 1}, base) : 0;
+    return av_compare_ts(packet_->pts + early, base, origin_, origin_base_) >= 0;
 }
 
 int StreamCopier::copy_until(AVFormatContext& to, std::optional<std::int64_t> time, AVRational time_base) {
@@ -171,28 +190,48 @@ int StreamCopier::copy_until(AVFormatContext& to, std::optional<std::int64_t> ti
         const AVStream& from = *input_->streams[packet_->stream_index];
         const std::int64_t stamp = packet_->dts != AV_NOPTS_VALUE ? packet_->dts : packet_->pts;
         if (time && stamp != AV_NOPTS_VALUE && av_compare_ts(stamp, from.time_base, *time, time_base) >= 0) break;
-        if (const int written = write_packet(to); written < 0) return written;
+        if (const int written = take_packet(to); written < 0) return written;
     }
     return 0;
 }
 
-int StreamCopier::write_packet(AVFormatContext& to) {
+int StreamCopier::take_packet(AVFormatContext& to) {
     const AVStream& from = *input_->streams[packet_->stream_index];
     Target& target = targets_[static_cast<std::size_t>(packet_->stream_index)];
     const std::int64_t shift = av_rescale_q(origin_, origin_base_, from.time_base);
+    pending_ = false;
+    if (target.coder) {
+        const int coded = target.coder->code(*packet_, shift, writer(to, target));
+        av_packet_unref(packet_.get());
+        return coded;
+    }
     if (packet_->pts != AV_NOPTS_VALUE) packet_->pts -= shift;
     if (packet_->dts != AV_NOPTS_VALUE) packet_->dts -= shift;
-    av_packet_rescale_ts(packet_.get(), from.time_base, target.stream->time_base);
+    return write_packet(to, target, *packet_, from.time_base);
+}
+
+int StreamCopier::write_packet(AVFormatContext& to, Target& target, AVPacket& packet, AVRational time_base) {
+    av_packet_rescale_ts(&packet, time_base, target.stream->time_base);
     // Muxers refuse time stamps that do not rise, which rounding or a careless source may bring.
-    if (packet_->dts != AV_NOPTS_VALUE) {
-        if (target.last_dts != AV_NOPTS_VALUE) packet_->dts = std::max(packet_->dts, target.last_dts + 1);
-        if (packet_->pts != AV_NOPTS_VALUE) packet_->pts = std::max(packet_->pts, packet_->dts);
-        target.last_dts = packet_->dts;
+    if (packet.dts != AV_NOPTS_VALUE) {
+        if (target.last_dts != AV_NOPTS_VALUE) packet.dts = std::max(packet.dts, target.last_dts + 1);
+        if (packet.pts != AV_NOPTS_VALUE) packet.pts = std::max(packet.pts, packet.dts);
+        target.last_dts = packet.dts;
     }
-    packet_->stream_index = target.stream->index;
-    packet_->pos = -1;
-    pending_ = false;
-    return av_interleaved_write_frame(&to, packet_.get());
+    packet.stream_index = target.stream->index;
+    packet.pos = -1;
+    return av_interleaved_write_frame(&to, &packet);
+}
+
+AudioTranscoder::Emit StreamCopier::writer(AVFormatContext& to, Target& target) {
+    return [&](AVPacket& packet) { return write_packet(to, target, packet, target.coder->encoder().time_base); };
+}
+
+int StreamCopier::finish(AVFormatContext& to) {
+    for (Target& target : targets_)
+        if (target.coder)
+            if (const int written = target.coder->finish(writer(to, target)); written < 0) return written;
+    return 0;
 }
 
 }  // namespace eikonal::libav

@@ -248,6 +248,8 @@ struct MovieWriter::State {
         if (frames == 0) throw FrameError(fmt::format("{}: no frame was written; no movie is made", path.string()));
         encode(nullptr);
         if (copier && timing == Timing::Source) copy_until({});
+        if (copier)
+            if (const int ended = copier->finish(*output); ended < 0) throw error(ended, "cannot be written");
         if (const int closed = av_write_trailer(output.get()); closed < 0) throw error(closed, "cannot be written");
         avio_flush(output->pb);
         if (const int failed = output->pb->error; failed < 0) throw error(failed, "cannot be written");
