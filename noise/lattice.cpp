@@ -123,8 +123,8 @@ std::size_t LatticeGeometry::half_spectrum() const {
     return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(half());
 }
 
-double derivative_wavenumber(int i, int n, double period) {
-    return is_nyquist(i, n) ? 0 : portable::kTwoPi * signed_index(i, n) / period;
+double bin_wavenumber(int i, int n, double period) {
+    return portable::kTwoPi * signed_index(i, n) / period;
 }
 
 LatticeField::LatticeField(const TurbulenceSpec& spec, const LatticeGeometry& geometry)
@@ -135,6 +135,14 @@ LatticeField::LatticeField(const TurbulenceSpec& spec, const LatticeGeometry& ge
         throw UserError(
             fmt::format("turbulence: an index that fluctuates by more than {:g} is unphysical; lower cn2 or strength",
                         kLargestRms));
+    const double finest2 = wavenumber2(largest_bending_mode(geometry_.size[0]), largest_bending_mode(geometry_.size[1]),
+                                       largest_bending_mode(geometry_.size[2]));
+    const double lowest = lowest_wavenumber(spec, geometry_);
+    if (spec.spectrum == SpectrumKind::Paper && !(lowest * lowest <= finest2 * (1 + 1e-12)))
+        throw UserError(fmt::format(
+            "turbulence: lowest_wavenumber = {:g} cycles is beyond the lattice's finest eddies of {:g}, so that none "
+            "are left; lower it, or make the lattice finer",
+            spec.lowest_wavenumber, spec.lowest_wavenumber * std::sqrt(finest2) / lowest));
     frequencies_ = spec.alpha > 0 ? geometry_.size[3] / 2 : 0;
     layout();
     const auto qx = static_cast<std::size_t>(geometry_.size[0] / 2 + 1),
@@ -318,25 +326,37 @@ FftVector<complex32> LatticeField::spectrum_at(double t) const {
     return out;
 }
 
+FftVector<complex32> LatticeField::bending_spectrum_at(double t) const {
+    FftVector<complex32> spectrum = spectrum_at(t);
+    const int nx = geometry_.size[0], ny = geometry_.size[1], nz = geometry_.size[2];
+    complex32* row = spectrum.data();
+    for (int ix = 0; ix < nx; ++ix)
+        for (int iy = 0; iy < ny; ++iy, row += geometry_.half()) {
+            const bool whole = is_nyquist(ix, nx) || is_nyquist(iy, ny);
+            std::fill(row + (whole ? 0 : largest_bending_mode(nz) + 1), row + geometry_.half(), complex32(0, 0));
+        }
+    return spectrum;
+}
+
 void LatticeField::period_spectrum(Component what, complex32* spectrum) const {
     const int nx = geometry_.size[0], ny = geometry_.size[1], nz = geometry_.size[2], nt = geometry_.size[3];
     const int half = geometry_.half();
     const std::size_t plane = geometry_.half_spectrum();
-    std::vector<float> kz(static_cast<std::size_t>(half), 1.0F);
-    if (what == Component::ForceZ)
-        for (int z = 0; z < half; ++z)
-            kz[static_cast<std::size_t>(z)] = static_cast<float>(derivative_wavenumber(z, nz, geometry_.period[2]));
+    const bool derivative = what != Component::Index;
     tbb::parallel_for(tbb::blocked_range<int>(0, nx), [&](const tbb::blocked_range<int>& range) {
-        std::vector<float> scale = kz;
+        std::vector<float> scale(static_cast<std::size_t>(half), 1.0F);
         for (int ix = range.begin(); ix < range.end(); ++ix)
             for (int iy = 0; iy < ny; ++iy) {
-                if (what == Component::ForceX || what == Component::ForceY) {
-                    const double k = what == Component::ForceX ? derivative_wavenumber(ix, nx, geometry_.period[0])
-                                                               : derivative_wavenumber(iy, ny, geometry_.period[1]);
-                    std::fill(scale.begin(), scale.end(), static_cast<float>(k));
+                if (derivative) {
+                    const bool bends = !is_nyquist(ix, nx) && !is_nyquist(iy, ny);
+                    for (int z = 0; z < half; ++z) {
+                        const double k = what == Component::ForceX   ? bin_wavenumber(ix, nx, geometry_.period[0])
+                                         : what == Component::ForceY ? bin_wavenumber(iy, ny, geometry_.period[1])
+                                                                     : bin_wavenumber(z, nz, geometry_.period[2]);
+                        scale[static_cast<std::size_t>(z)] = bends && !is_nyquist(z, nz) ? static_cast<float>(k) : 0.0F;
+                    }
                 }
                 const std::size_t r = row_index(ix, iy);
-                const bool derivative = what != Component::Index;
                 const std::uint16_t* first = first_modes(ix, iy);
                 const float* re = amplitudes_.data() + rows_[r].offset;
                 const float* im = re + rows_[r].total;

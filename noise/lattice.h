@@ -10,9 +10,11 @@
 /// temporal Nyquist frequency keeps both halves ±κ, so that the variance is constant between the time samples too. The
 /// k = 0 mode is zero: a lattice period has no mean deviation.
 ///
-/// Nyquist modes of space (even sizes) belong to n, as cos(k x), but not to its derivative along that axis (ik is zero
-/// there); advection multiplies them by cos(k v t), so that the field stays real. Exact otherwise at any sub-voxel
-/// shift.
+/// Nyquist modes of space (even sizes; at Nyquist along one axis or more) belong to n, whose variance counts them, but
+/// bend no light: F̂ = ik n̂ is zero there along every axis. Their slope is known at the nodes only, where it vanishes,
+/// and they cannot be moved by part of a cell: advection multiplies them by cos(k v t), so that n stays real. What is
+/// left moves exactly at any sub-voxel shift, and is one function, without curl, on which the node values of F, the
+/// tables, a ray through a snapshot and the tracer agree. LatticeField::bending_spectrum_at is its n.
 ///
 /// Time. Any real t up to 1e9 s, at equal cost: κt and v t are reduced before the trigonometry. With v = 0 the field
 /// repeats after T without a seam; with v it does if every v_i T is a whole number of periods L_i.
@@ -58,8 +60,12 @@ constexpr int signed_index(int i, int n) {
 constexpr bool is_nyquist(int i, int n) {
     return 2 * i == n;
 }
-/// Wavenumber of a derivative along an axis [rad/m]: zero at Nyquist.
-double derivative_wavenumber(int i, int n, double period);
+/// Largest |m| of n bins that is not Nyquist: modes beyond bend no light.
+constexpr int largest_bending_mode(int n) {
+    return (n - 1) / 2;
+}
+/// Wavenumber of Fourier bin i of n along an axis [rad/m].
+double bin_wavenumber(int i, int n, double period);
 
 /// What a spec asks for, and for what it leaves out: period 2 L0; cells of l0/2 (von Kármán), but at most
 /// kLargestDefaultSize a side, and 32 for the paper's spectrum; T = 4 correlation times 2/(√α k0) of the largest
@@ -81,12 +87,14 @@ enum class Component { Index, ForceX, ForceY, ForceZ };
 class LatticeField {
   public:
     /// Draws every amplitude from spec.seed. Throws what check_lattice throws, but for the memory limit, and UserError
-    /// for a strength beyond single precision.
+    /// for a strength beyond single precision, and for the paper's lowest wavenumber beyond all that bends light.
     LatticeField(const TurbulenceSpec& spec, const LatticeGeometry& geometry);
 
     /// Spatial spectrum of n - n_ambient at time t [s]: nx × ny × (nz/2 + 1), row-major, Hermitian in its planes
     /// kz = 0 and Nyquist, so that the unnormalised inverse transform gives the node values.
     FftVector<complex32> spectrum_at(double t) const;
+    /// The same without the Nyquist modes of space: the n whose gradient is the force.
+    FftVector<complex32> bending_spectrum_at(double t) const;
 
     /// Every sample of the period, nt × nx × ny × nz row-major (z fastest), by one 4-D inverse FFT, at t = m T/nt.
     /// Without the mean motion, whose phase has no period in T. For several components keep a PeriodSynthesis.

@@ -287,16 +287,14 @@ double snapshot_slope_error(const LatticeField& field, int padding) {
     // Squared errors of value and slope of the spline along each axis.
     std::array<std::vector<double>, 3> value, slope;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        for (int m = 0; 2 * m <= g.size[axis]; ++m) {
+        for (int m = 0; m <= largest_bending_mode(g.size[axis]); ++m) {
             const double turns = static_cast<double>(m) / (g.size[axis] * padding);
             value[axis].push_back(spline_error(turns) * spline_error(turns));
             slope[axis].push_back(spline_slope_error(turns) * spline_slope_error(turns));
         }
     double error = 0, power = 0;
     std::array<std::size_t, 3> m{};
-    const auto count = [&](std::size_t axis) {
-        return m[axis] == 0 || is_nyquist(static_cast<int>(m[axis]), g.size[axis]) ? 1.0 : 2.0;
-    };
+    const auto count = [&](std::size_t axis) { return m[axis] == 0 ? 1.0 : 2.0; };
     for (m[0] = 0; m[0] < value[0].size(); ++m[0])
         for (m[1] = 0; m[1] < value[1].size(); ++m[1])
             for (m[2] = 0; m[2] < value[2].size(); ++m[2]) {
@@ -305,7 +303,7 @@ double snapshot_slope_error(const LatticeField& field, int padding) {
                     field.mode_variance(static_cast<int>(m[0]), static_cast<int>(m[1]), static_cast<int>(m[2]));
                 const double values = value[0][m[0]] + value[1][m[1]] + value[2][m[2]];
                 for (std::size_t axis = 0; axis < 3; ++axis) {
-                    const double k = derivative_wavenumber(static_cast<int>(m[axis]), g.size[axis], g.period[axis]);
+                    const double k = bin_wavenumber(static_cast<int>(m[axis]), g.size[axis], g.period[axis]);
                     power += variance * k * k;
                     error += variance * k * k * (values - value[axis][m[axis]] + slope[axis][m[axis]]);
                 }
@@ -316,7 +314,7 @@ double snapshot_slope_error(const LatticeField& field, int padding) {
 LatticeSnapshot::LatticeSnapshot(const LatticeField& field, double t, int padding)
     : period_{field.geometry().period[0], field.geometry().period[1], field.geometry().period[2]},
       falloff_(field.spec().falloff),
-      spline_(field.spectrum_at(t), spatial_size(field.geometry()), padding) {}
+      spline_(field.bending_spectrum_at(t), spatial_size(field.geometry()), padding) {}
 
 IndexSample LatticeSnapshot::sample(const dvec3& x) const {
     const PeriodicSpline3::Sample s = spline_.sample(x / period_);
@@ -338,7 +336,8 @@ IndexJet LatticeSnapshot::jet(const dvec3& x) const {
 FftVector<float> node_field(const LatticeField& field, double t, Component what) {
     const LatticeGeometry& g = field.geometry();
     const auto half = static_cast<std::size_t>(g.half());
-    const FftVector<complex32> spectrum = field.spectrum_at(t);
+    const FftVector<complex32> spectrum =
+        what == Component::Index ? field.spectrum_at(t) : field.bending_spectrum_at(t);
     const FftPlan plan(FftPlan::Kind::ComplexToReal, spatial_size(g));
     const auto transform = [&](Component component) {
         FftVector<complex32> modes = spectrum;
@@ -349,7 +348,7 @@ FftVector<float> node_field(const LatticeField& field, double t, Component what)
                            y = static_cast<int>(r / half % static_cast<std::size_t>(g.size[1]));
                 const auto x = static_cast<int>(r / half / static_cast<std::size_t>(g.size[1]));
                 const int bin = axis == 0 ? x : (axis == 1 ? y : z);
-                const auto k = static_cast<float>(derivative_wavenumber(bin, g.size[axis], g.period[axis]));
+                const auto k = static_cast<float>(bin_wavenumber(bin, g.size[axis], g.period[axis]));
                 modes[r] = {-k * modes[r].imag(), k * modes[r].real()};
             }
         }

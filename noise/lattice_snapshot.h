@@ -1,17 +1,17 @@
 /// One instant of a lattice field as continuous functions, and as node values.
 ///
-/// n is a periodic cubic B-spline whose coefficients are the lattice spectrum divided by the spline's own transfer
-/// (prefilter in Fourier space), so that it passes through the node values exactly: C² in n, C¹ in its gradient, and
-/// the gradient is the exact derivative of the interpolated n, hence free of curl. Falloff (PHYSICS 5, Fig. 6)
-/// multiplies the potential: n g, with gradient g ∇n + n ∇g, hence curl-free as well (∇g jumps where the falloff
-/// begins, h = 0).
+/// The continuous n is what bends light: the lattice's n less its Nyquist modes of space, which have no force
+/// (lattice.h), so that index and gradient along a ray are of one function. It is a periodic cubic B-spline whose
+/// coefficients are the lattice spectrum divided by the spline's own transfer (prefilter in Fourier space), so that it
+/// passes through the node values exactly: C² in n, C¹ in its gradient, and the gradient is the exact derivative of the
+/// interpolated n, hence free of curl. Falloff (PHYSICS 5, Fig. 6) multiplies the potential: n g, with gradient g ∇n +
+/// n ∇g, hence curl-free as well (∇g jumps where the falloff begins, h = 0).
 ///
 /// Interpolation error against the trigonometric sum, in rms and relative to the mode, for a mode with τ turns a cell
 /// along an axis: spline_error(τ) for n, spline_slope_error(τ) for its derivative there (both known in closed form and
 /// tested, tests/lattice_test.cpp). `padding` p > 1 evaluates the trigonometric sum on a lattice p times finer first,
 /// which costs p³ in memory and divides τ by p. (τ: n, slope) 1/2: 0.7, 0.7;
-/// 3/8: 0.17, 0.23; 1/4: 0.019, 0.04; 1/8: 8e-4, 3e-3; 1/16: 4e-5, 4e-4. A spatial Nyquist mode, which has no slope in
-/// the lattice's own force, has one between the nodes of a spline.
+/// 3/8: 0.17, 0.23; 1/4: 0.019, 0.04; 1/8: 8e-4, 3e-3; 1/16: 4e-5, 4e-4.
 #pragma once
 
 #include <algorithm>
@@ -69,7 +69,7 @@ double spline_slope_error(double turns);
 /// the lattice's modes. With cells of l0/2 (von Kármán) and padding 1, 2, 3, 4: 0.19, 0.0096, 0.0022, 8.4e-4.
 double snapshot_slope_error(const LatticeField& field, int padding);
 
-/// n - n_ambient and its gradient at one instant, with falloff. Immutable, thread-safe.
+/// n - n_ambient (less Nyquist modes) and its gradient at one instant, with falloff. Immutable, thread-safe.
 class LatticeSnapshot {
   public:
     /// t [s]; padding >= 1 (see above).
@@ -103,8 +103,8 @@ IndexJet falloff_jet(const Falloff& falloff, const dvec3& x);
 IndexSample with_falloff(const std::optional<Falloff>& falloff, const dvec3& x, const IndexSample& field);
 IndexJet with_falloff(const std::optional<Falloff>& falloff, const dvec3& x, const IndexJet& field);
 
-/// Node values at time t, nx × ny × nz row-major, node (i, j, l) at world (i Lx/nx, j Ly/ny, l Lz/nz): n - n_ambient or
-/// an exact component of its gradient (spectrum times ik), both with falloff.
+/// Node values at time t, nx × ny × nz row-major, node (i, j, l) at world (i Lx/nx, j Ly/ny, l Lz/nz): n - n_ambient,
+/// Nyquist modes included, or an exact component of the force (bending spectrum times ik), both with falloff.
 FftVector<float> node_field(const LatticeField& field, double t, Component what);
 
 }  // namespace eikonal

@@ -21,15 +21,26 @@ constexpr int kDefaultPaperSize = 32;
 /// nz nt: the modes of a row are counted by an int, and by the 32 bits of a random counter.
 constexpr double kLongestRow = 2e9;
 
-/// Calls action(mx, my, mz, modes) for every |m| of the lattice; `modes` signed modes share it.
+/// Calls action(m, modes) for every |m| of the lattice up to `last` along each axis; `modes` signed modes share it.
 template <class Action>
-void for_each_octant_mode(const LatticeGeometry& g, Action&& action) {
+void for_each_octant_mode(const LatticeGeometry& g, const std::array<int, 3>& last, Action&& action) {
     const auto signs = [](int m, int n) { return m == 0 || is_nyquist(m, n) ? 1.0 : 2.0; };
-    for (int mx = 0; mx <= g.size[0] / 2; ++mx)
-        for (int my = 0; my <= g.size[1] / 2; ++my)
-            for (int mz = 0; mz <= g.size[2] / 2; ++mz)
+    for (int mx = 0; mx <= last[0]; ++mx)
+        for (int my = 0; my <= last[1]; ++my)
+            for (int mz = 0; mz <= last[2]; ++mz)
                 action(std::array<int, 3>{mx, my, mz},
                        signs(mx, g.size[0]) * signs(my, g.size[1]) * signs(mz, g.size[2]));
+}
+
+/// The same of every mode, and of those that bend light.
+template <class Action>
+void for_each_mode(const LatticeGeometry& g, Action&& action) {
+    for_each_octant_mode(g, {g.size[0] / 2, g.size[1] / 2, g.size[2] / 2}, action);
+}
+template <class Action>
+void for_each_bending_mode(const LatticeGeometry& g, Action&& action) {
+    for_each_octant_mode(
+        g, {largest_bending_mode(g.size[0]), largest_bending_mode(g.size[1]), largest_bending_mode(g.size[2])}, action);
 }
 
 /// |∫₀^u w (u - w) e^{ikw} dw| = 4 |sin φ - φ cos φ|/k³, φ = ku/2; u³/6 as φ → 0.
@@ -117,34 +128,30 @@ double LatticeField::mode_correlation(int mx, int my, int mz, double t) const {
 
 double LatticeField::variance() const {
     double sum = 0;
-    for_each_octant_mode(
-        geometry_, [&](const std::array<int, 3>& m, double modes) { sum += modes * mode_variance(m[0], m[1], m[2]); });
+    for_each_mode(geometry_,
+                  [&](const std::array<int, 3>& m, double modes) { sum += modes * mode_variance(m[0], m[1], m[2]); });
     return sum;
 }
 
 std::array<double, 2> LatticeField::focusing_variance(int axis, double u, bool perspective, double aperture) const {
-    const int n = geometry_.size[axis];
     std::vector<double> weight;
-    for (int m = 0; m <= n / 2; ++m) {
+    for (int m = 0; m <= largest_bending_mode(geometry_.size[axis]); ++m) {
         const double k = portable::kTwoPi * m / geometry_.period[axis];
         const double kernel = perspective ? diverging_kernel(k, u) / u : std::abs(path_kernel(k, u));
-        weight.push_back(kernel * kernel * (is_nyquist(m, n) ? 0.5 : 1));  // a cosine along the ray
+        weight.push_back(kernel * kernel);
     }
     const std::array<int, 2> lateral{axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
     std::array<double, 2> sum{};
-    for_each_octant_mode(geometry_, [&](const std::array<int, 3>& m, double modes) {
-        std::array<double, 2> k2{}, slope2{};
+    for_each_bending_mode(geometry_, [&](const std::array<int, 3>& m, double modes) {
+        std::array<double, 2> k2{};
         for (int e = 0; e < 2; ++e) {
-            const int along = lateral[e];
-            const double k = portable::kTwoPi * m[along] / geometry_.period[along];
-            const double slope = derivative_wavenumber(m[along], geometry_.size[along], geometry_.period[along]);
+            const double k = portable::kTwoPi * m[lateral[e]] / geometry_.period[lateral[e]];
             k2[e] = k * k;
-            slope2[e] = slope * slope;
         }
         const double filter = perspective ? 1 : jinc(0.5 * aperture * std::sqrt(k2[0] + k2[1]));
         const double power =
             modes * weight[static_cast<std::size_t>(m[axis])] * filter * filter * mode_variance(m[0], m[1], m[2]);
-        for (int e = 0; e < 2; ++e) sum[e] += power * slope2[e] * slope2[e];
+        for (int e = 0; e < 2; ++e) sum[e] += power * k2[e] * k2[e];
     });
     return sum;
 }
@@ -158,7 +165,7 @@ double LatticeField::structure_function(int axis, double r) const {
         weight[static_cast<std::size_t>(m)] = 2 * (1 - c);
     }
     double sum = 0;
-    for_each_octant_mode(geometry_, [&](const std::array<int, 3>& m, double modes) {
+    for_each_mode(geometry_, [&](const std::array<int, 3>& m, double modes) {
         sum += modes * weight[static_cast<std::size_t>(m[axis])] * mode_variance(m[0], m[1], m[2]);
     });
     return sum;

@@ -38,9 +38,8 @@ struct Kernels {
     }
 };
 
-/// H(k∥) = e^{ik∥z0} kernel(sign k∥) for each bin of the ray axis; real at Nyquist, whose mode is a cosine along the
-/// ray. Along z only half the bins are stored: the other half is added as the mirrored conjugate, hence ½ where it is
-/// its own.
+/// H(k∥) = e^{ik∥z0} kernel(sign k∥) for each bin of the ray axis (Nyquist's has no modes). Along z only half the bins
+/// are stored: the other half is added as the mirrored conjugate, hence ½ where it is its own.
 template <class Kernel>
 void fill_kernel(const LatticeGeometry& g, const PathRays& rays, double z0, Kernel&& kernel, float* re, float* im) {
     const int n = g.size[rays.axis], bins = rays.axis == 2 ? g.half() : n;
@@ -51,8 +50,7 @@ void fill_kernel(const LatticeGeometry& g, const PathRays& rays, double z0, Kern
         portable::sincos_turns(m * start, s, c);
         const std::complex<double> h = kernel(rays.sign * (portable::kTwoPi * m / period));
         double hr = c * h.real() - s * h.imag(), hi = c * h.imag() + s * h.real();
-        if (is_nyquist(i, n)) hi = 0;
-        if (rays.axis == 2 && (i == 0 || is_nyquist(i, n))) {
+        if (rays.axis == 2 && i == 0) {
             hr *= 0.5;
             hi *= 0.5;
         }
@@ -203,8 +201,7 @@ FftVector<complex32> differentiate(const FftVector<complex32>& spectrum, const L
     std::size_t at = 0;
     for (int i = 0; i < size[0]; ++i)
         for (int j = 0; j < half; ++j, ++at) {
-            const auto k =
-                static_cast<float>(derivative_wavenumber(e == 0 ? i : j, size[e], g.period[rays.lateral()[e]]));
+            const auto k = static_cast<float>(bin_wavenumber(e == 0 ? i : j, size[e], g.period[rays.lateral()[e]]));
             out[at] = {-k * spectrum[at].imag(), k * spectrum[at].real()};
         }
     return out;
@@ -237,20 +234,18 @@ std::vector<LateralVariance> lateral_variances(const LatticeField& field, const 
                                                std::span<const int> paddings) {
     const LatticeGeometry& g = field.geometry();
     const std::array<int, 2> lateral = rays.lateral(), size = lateral_size(g, rays);
-    const int n = g.size[rays.axis];
-    const auto signs = [](int m, int count) { return m == 0 || is_nyquist(m, count) ? 1.0 : 2.0; };
-    std::vector<double> weight(static_cast<std::size_t>(n / 2 + 1));
-    for (int m = 0; m <= n / 2; ++m)
-        weight[static_cast<std::size_t>(m)] =
-            power(portable::kTwoPi * m / g.period[rays.axis]) * (is_nyquist(m, n) ? 0.5 : signs(m, n));
+    const auto signs = [](int m) { return m == 0 ? 1.0 : 2.0; };
+    const int last = largest_bending_mode(g.size[rays.axis]);
+    std::vector<double> weight;
+    for (int m = 0; m <= last; ++m) weight.push_back(power(portable::kTwoPi * m / g.period[rays.axis]) * signs(m));
     std::vector<std::array<std::vector<double>, 2>> error(paddings.size());
     for (std::size_t p = 0; p < paddings.size(); ++p)
         for (int e = 0; e < 2; ++e)
-            for (int m = 0; m <= size[e] / 2; ++m)
+            for (int m = 0; m <= largest_bending_mode(size[e]); ++m)
                 error[p][e].push_back(spline_error(static_cast<double>(m) / (size[e] * paddings[p])));
     std::vector<LateralVariance> out(paddings.size());
-    for (int m0 = 0; m0 <= size[0] / 2; ++m0)
-        for (int m1 = 0; m1 <= size[1] / 2; ++m1) {
+    for (int m0 = 0; m0 <= largest_bending_mode(size[0]); ++m0)
+        for (int m1 = 0; m1 <= largest_bending_mode(size[1]); ++m1) {
             const std::array<int, 2> m{m0, m1};
             const double k0 = portable::kTwoPi * m0 / g.period[lateral[0]],
                          k1 = portable::kTwoPi * m1 / g.period[lateral[1]];
@@ -258,13 +253,13 @@ std::vector<LateralVariance> lateral_variances(const LatticeField& field, const 
             double sum = 0;
             std::array<int, 3> mode{};
             for (int e = 0; e < 2; ++e) mode[lateral[e]] = m[e];
-            for (int l = 0; l <= n / 2; ++l) {
+            for (int l = 0; l <= last; ++l) {
                 mode[rays.axis] = l;
                 sum += weight[static_cast<std::size_t>(l)] * field.mode_variance(mode[0], mode[1], mode[2]);
             }
-            sum *= filter * filter * signs(m0, size[0]) * signs(m1, size[1]);
+            sum *= filter * filter * signs(m0) * signs(m1);
             for (int e = 0; e < 2; ++e) {
-                const double k = derivative_wavenumber(m[e], size[e], g.period[lateral[e]]);
+                const double k = e == 0 ? k0 : k1;
                 for (std::size_t p = 0; p < paddings.size(); ++p) {
                     const double e0 = error[p][0][static_cast<std::size_t>(m0)],
                                  e1 = error[p][1][static_cast<std::size_t>(m1)];
@@ -316,7 +311,7 @@ std::vector<PathTable> path_tables(const LatticeField& field, double t, const Pa
     const LatticeGeometry& g = field.geometry();
     const SplinePlan2 plan = spline_plan(g, rays, padding > 0 ? padding : path_padding(field, rays, u));
     const Splines splines{plan, g, rays};
-    const std::vector<PathSpectrum> spectra = path_spectra(field, field.spectrum_at(t), rays, u);
+    const std::vector<PathSpectrum> spectra = path_spectra(field, field.bending_spectrum_at(t), rays, u);
     std::vector<PathTable> tables(u.size());
     tbb::parallel_for(std::size_t{0}, u.size(), [&](std::size_t i) {
         tables[i].u = u[i];
@@ -340,7 +335,7 @@ SliceTable slice_table(const LatticeField& field, double t, const PathRays& rays
     const Splines splines{plan, g, rays};
     Kernels kernels(1, rays.axis == 2 ? g.half() : g.size[rays.axis]);
     fill_kernel(g, rays, rays.z0 + rays.sign * w, flat, kernels.re(0), kernels.re(0) + kernels.stride);
-    const FftVector<complex32> slice = std::move(lateral_spectra(g, field.spectrum_at(t), rays, kernels)[0]);
+    const FftVector<complex32> slice = std::move(lateral_spectra(g, field.bending_spectrum_at(t), rays, kernels)[0]);
     SliceTable table{splines.gradient(slice), {}};
     if (field.spec().falloff) table.index = splines(slice);
     return table;

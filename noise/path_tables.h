@@ -3,9 +3,10 @@
 ///
 ///     Ψ̂(k⊥; u) = Σ_k∥ n̂(k) e^{i k∥ z0} h(sign k∥, u),      x̂1(k⊥; u) = i k⊥ Ψ̂(k⊥; u)
 ///
-/// with h of path_kernel.h; Ψ = ∫₀^u (u - w) n dw [m²] is the potential of the lateral displacement, and Ψ' = ∫₀^u n dw
-/// that of the bend. The force is ∇n ("physical" for n ≈ 1); the paper's ½, exaggeration and the division by u belong
-/// to the caller. An aperture of diameter A averages over parallel rays: times jinc(k⊥A/2).
+/// with h of path_kernel.h and n̂ less its Nyquist modes of space, which bend no light (lattice.h); Ψ = ∫₀^u (u - w) n
+/// dw [m²] is the potential of the lateral displacement, and Ψ' = ∫₀^u n dw that of the bend. The force is ∇n
+/// ("physical" for n ≈ 1); the paper's ½, exaggeration and the division by u belong to the caller. An aperture of
+/// diameter A averages over parallel rays: times jinc(k⊥A/2).
 ///
 /// Falloff whose normal is perpendicular to the axis is constant along a ray, so the caller combines at the pixel
 ///     x1[∇(g n)] = g x1[∇n] + ∇g Ψ,     and with derivatives for the bend;
@@ -46,7 +47,8 @@ struct PathSpectrum {
     FftVector<complex32> slope;      ///< Ψ' [m]
 };
 
-/// One for each u [m] >= 0. `spectrum`: that of the field at the instant, from LatticeField::spectrum_at.
+/// One for each u [m] >= 0. `spectrum`: that of the field at the instant, from
+/// LatticeField::bending_spectrum_at.
 std::vector<PathSpectrum> path_spectra(const LatticeField& field, const FftVector<complex32>& spectrum,
                                        const PathRays& rays, std::span<const double> u);
 

@@ -1,6 +1,6 @@
 // The reference for lattice fields: the trigonometric sum itself, term by term, in double precision and with the C
-// library's sine. Shares nothing with the library but the spectrum's layout. Nyquist modes are cosines in n and absent
-// from the derivative along their axis.
+// library's sine. Shares nothing with the library but the spectrum's layout. Nyquist modes are cosines in the index and
+// absent from what bends light.
 #pragma once
 
 #include <complex>
@@ -17,16 +17,22 @@ class TrigonometricSum {
     TrigonometricSum(const FftVector<complex32>& spectrum, const LatticeGeometry& geometry)
         : spectrum_(spectrum.begin(), spectrum.end()), g_(geometry) {}
 
-    IndexSample sample(const dvec3& x) const {
+    /// What bends light, and its gradient.
+    IndexSample sample(const dvec3& x) const { return sum(x, false); }
+    /// n - n_ambient, every mode counted.
+    double index(const dvec3& x) const { return sum(x, true).n; }
+
+  private:
+    IndexSample sum(const dvec3& x, bool nyquist_too) const {
         std::array<std::vector<std::complex<double>>, 3> value, slope;
         for (int axis = 0; axis < 3; ++axis) {
             const int n = g_.size[axis], count = axis == 2 ? n / 2 + 1 : n;
             for (int i = 0; i < count; ++i) {
                 const double k = 2 * M_PI * (2 * i <= n ? i : i - n) / g_.period[axis];
-                const bool nyquist = 2 * i == n;
-                const std::complex<double> e = nyquist ? std::cos(k * x[axis]) : std::polar(1.0, k * x[axis]);
+                const std::complex<double> wave = std::polar(1.0, k * x[axis]);
+                const std::complex<double> e = 2 * i != n ? wave : nyquist_too ? wave.real() : 0.0;
                 value[axis].push_back(e);
-                slope[axis].push_back(nyquist ? 0.0 : std::complex<double>(0, k) * e);
+                slope[axis].push_back(std::complex<double>(0, k) * e);
             }
         }
         IndexSample out{0, {0, 0, 0}};
@@ -45,7 +51,6 @@ class TrigonometricSum {
         return out;
     }
 
-  private:
     std::vector<std::complex<double>> spectrum_;
     LatticeGeometry g_;
 };
