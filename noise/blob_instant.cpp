@@ -26,30 +26,30 @@ double distance_to_box(const dvec3& x, const dvec3& low, const dvec3& high) {
     return glm::length(d);
 }
 
+/// 1/d, large but finite for coordinates that do not change along it.
+dvec3 inverse(const dvec3& d) {
+    constexpr double kLarge = 1e300;
+    return {d.x == 0 ? kLarge : 1 / d.x, d.y == 0 ? kLarge : 1 / d.y, d.z == 0 ? kLarge : 1 / d.z};
+}
+
 /// Way along d into a box; kNever if it is not met.
-double way_into_box(const dvec3& x, const dvec3& d, const dvec3& low, const dvec3& high) {
-    double enter = 0, leave = kNever;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (d[axis] == 0) {
-            if (x[axis] < low[axis] || x[axis] > high[axis]) return kNever;
-            continue;
-        }
-        const double a = (low[axis] - x[axis]) / d[axis], b = (high[axis] - x[axis]) / d[axis];
-        enter = std::max(enter, std::min(a, b));
-        leave = std::min(leave, std::max(a, b));
-    }
+double way_into_box(const dvec3& x, const dvec3& inverse_d, const dvec3& low, const dvec3& high) {
+    const dvec3 a = (low - x) * inverse_d, b = (high - x) * inverse_d;
+    const dvec3 near = glm::min(a, b), far = glm::max(a, b);
+    const double enter = std::max({0.0, near.x, near.y, near.z}), leave = std::min({far.x, far.y, far.z});
     return enter <= leave ? enter : kNever;
 }
 
 }  // namespace
 
-BlobInstant::BlobInstant(std::span<const Blob> blobs) {
+BlobInstant::BlobInstant(std::span<const Blob> blobs, double reach) {
     balls_.reserve(blobs.size());
     for (const Blob& blob : blobs) {
         if (blob.n == 0) continue;
-        balls_.push_back({blob.center, blob.sigma, blob.n, 1 / (blob.sigma * blob.sigma), kBlobReach * blob.sigma,
+        balls_.push_back({blob.center, blob.sigma, blob.n, 1 / (blob.sigma * blob.sigma), reach * blob.sigma,
                           static_cast<std::uint32_t>(balls_.size())});
         (blob.n < 0 ? lower_ : upper_) += blob.n;
+        strongest_ = std::max(strongest_, std::abs(blob.n));
     }
     if (!balls_.empty()) build(0, static_cast<std::uint32_t>(balls_.size()));
 }
@@ -86,30 +86,35 @@ void BlobInstant::build(std::uint32_t first, std::uint32_t last) {
     build(middle, last);
 }
 
-template <class Action>
-void BlobInstant::for_each_at(const dvec3& x, Action&& action) const {
+template <class Meets, class Action>
+void BlobInstant::for_each(Meets&& meets, Action&& action) const {
     if (nodes_.empty()) return;
     std::array<std::uint32_t, kDeepest> waiting;
     std::size_t depth = 0;
     std::uint32_t at = 0;
     for (;;) {
         const Node& node = nodes_[at];
-        if (inside(x, node.low, node.high)) {
+        if (meets(node)) {
             if (node.count == 0) {
                 waiting[depth++] = node.second;
                 ++at;
                 continue;
             }
-            for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-                const Ball& ball = balls_[i];
-                const dvec3 d = x - ball.center;
-                const double r2 = d.x * d.x + d.y * d.y + d.z * d.z;
-                if (r2 < ball.reach * ball.reach) action(ball, d, r2);
-            }
+            for (std::uint32_t i = node.first; i < node.first + node.count; ++i) action(balls_[i]);
         }
         if (depth == 0) return;
         at = waiting[--depth];
     }
+}
+
+template <class Action>
+void BlobInstant::for_each_at(const dvec3& x, Action&& action) const {
+    for_each([&](const Node& node) { return inside(x, node.low, node.high); },
+             [&](const Ball& ball) {
+                 const dvec3 d = x - ball.center;
+                 const double r2 = d.x * d.x + d.y * d.y + d.z * d.z;
+                 if (r2 < ball.reach * ball.reach) action(ball, d, r2);
+             });
 }
 
 template <class Bound, class Distance>
@@ -171,8 +176,51 @@ double BlobInstant::longest_step(const dvec3& x) const {
         });
 }
 
+/// Distance from a blob's centre [σ] beyond which it turns a ray by less: 2√π |n_j| b e^{-b²}, with b <= kBlobReach.
+double BlobInstant::reach_of(double turn) const {
+    constexpr double kTwoRootPi = 3.5449077018110318;
+    const double ratio = kTwoRootPi * kBlobReach * strongest_ / turn;
+    if (!(ratio > 1)) return 0;
+    return std::min(kBlobReach, std::sqrt(portable::log(ratio)));
+}
+
+double BlobInstant::longest_stride(const dvec3& x, const dvec3& d, double turn) const {
+    const double reach = reach_of(turn);
+    const dvec3 inverse_d = inverse(d);
+    return least(
+        [&](const Node& node) {
+            const double way = way_into_box(x, inverse_d, node.low, node.high);
+            return way < kNever ? std::max(kBlobStride * node.least_sigma, way) : kNever;
+        },
+        [&](const Ball& ball) {
+            const dvec3 from = ball.center - x;
+            const double sigma = ball.sigma, w = glm::dot(from, d), r2 = glm::dot(from, from), end = reach * sigma;
+            // the nearest that the ray comes from here on
+            if (!((w > 0 ? r2 - w * w : r2) < end * end)) return kNever;
+            return std::max(kBlobStride * sigma, std::sqrt(r2) - sigma);
+        });
+}
+
+BlobInstant::Bend BlobInstant::bend(const dvec3& x, const dvec3& d, double distance, double turn) const {
+    const double reach = reach_of(turn);
+    const dvec3 inverse_d = inverse(d);
+    Bend sum;
+    for_each([&](const Node& node) { return way_into_box(x, inverse_d, node.low, node.high) <= distance; },
+             [&](const Ball& ball) {
+                 const dvec3 from = x - ball.center;
+                 const double w = -glm::dot(from, d);
+                 const dvec3 b = from + w * d;
+                 const double b2 = glm::dot(b, b), r = reach * ball.sigma;
+                 if (!(b2 < r * r && w > -r && w - distance < r)) return;
+                 sum.x1 += perturb_at(ball.sigma, ball.n, b, w, d, distance).x1;
+                 sum.largest += std::abs(ball.n) * portable::exp(-b2 * ball.inverse2);
+             });
+    return sum;
+}
+
 double BlobInstant::clear_way(const dvec3& x, const dvec3& d) const {
-    return least([&](const Node& node) { return way_into_box(x, d, node.low, node.high); },
+    const dvec3 inverse_d = inverse(d);
+    return least([&](const Node& node) { return way_into_box(x, inverse_d, node.low, node.high); },
                  [&](const Ball& ball) {
                      const Chord chord(x - ball.center, d, ball.reach);
                      if (!(chord.leave > 0 && chord.leave < kNever)) return kNever;

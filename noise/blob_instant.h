@@ -20,10 +20,13 @@ namespace eikonal {
 inline constexpr double kBlobReach = 6.0697085;
 /// The longest step within a blob [σ].
 inline constexpr double kBlobStep = 0.5;
+/// The longest step within a blob of a method that controls its error [σ].
+inline constexpr double kBlobStride = 1.5;
 
 class BlobInstant {
   public:
-    explicit BlobInstant(std::span<const Blob> blobs);
+    /// reach: where a blob ends [σ]; less than kBlobReach is quicker, and drops e^{-reach²} of each.
+    explicit BlobInstant(std::span<const Blob> blobs, double reach = kBlobReach);
 
     /// n - n_ambient and its gradient at x.
     IndexSample sample(const dvec3& x) const;
@@ -33,6 +36,20 @@ class BlobInstant {
     /// The longest step from x in any direction that misses no blob: least over all of kBlobStep σ plus the way to it.
     /// Infinity without blobs.
     double longest_step(const dvec3& x) const;
+    /// The longest step from x along the unit direction d of a method that controls its error and looks at both ends:
+    /// no longer than kBlobStride σ, or ending σ before the centre at most. So it looks next to where a blob is
+    /// strongest on its way. Blobs that turn this ray by less than `turn` [rad] > 0 do not count; infinity if none
+    /// does.
+    double longest_stride(const dvec3& x, const dvec3& d, double turn) const;
+
+    /// Bend of the straight ray from x along the unit direction d at its end, D = distance > 0 [m] away, in closed form
+    /// (noise/blob_kernel.h): x1 = ∫₀^D (D - w) ∇n dw. Blobs that turn a ray by less than `turn` [rad] are left out.
+    struct Bend {
+        dvec3 x1{0, 0, 0};
+        double largest = 0;  ///< bound of |n - n_ambient| on the way
+    };
+    Bend bend(const dvec3& x, const dvec3& d, double distance, double turn) const;
+
     /// Way from x along the unit direction d to the first blob's reach: 0 inside one or touching it (kTouch of
     /// noise/ways.h), infinity if none is met.
     double clear_way(const dvec3& x, const dvec3& d) const;
@@ -58,6 +75,10 @@ class BlobInstant {
     };
 
     void build(std::uint32_t first, std::uint32_t last);
+    double reach_of(double turn) const;
+    /// Calls action(ball) for every ball of a leaf that, like all above it, meets(node).
+    template <class Meets, class Action>
+    void for_each(Meets&& meets, Action&& action) const;
     /// Calls action(ball, d = x - center, |d|²) for every ball that holds x.
     template <class Action>
     void for_each_at(const dvec3& x, Action&& action) const;
@@ -67,7 +88,7 @@ class BlobInstant {
 
     std::vector<Ball> balls_;
     std::vector<Node> nodes_;
-    double lower_ = 0, upper_ = 0;
+    double lower_ = 0, upper_ = 0, strongest_ = 0;
 };
 
 }  // namespace eikonal

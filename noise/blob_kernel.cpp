@@ -89,7 +89,12 @@ Profile ray_towards_blob_beyond(Wide a, Wide c, Wide delta) {
             area_c - fall * area_a, (fall - 1) / 2, c * c};
 }
 
+/// Tails further out than this [σ] are nothing beside a whole pass, also when multiplied by a ray of kLongPass σ.
+constexpr Wide kTail = 8, kLongPass = 1e8L;
+
 Profile ray_across_blob(Wide a, Wide c, Wide delta) {
+    if (a < -kTail && c > kTail && delta < kLongPass)
+        return {c * portable::kSqrtPi, -portable::kSqrtPi / 2, portable::kSqrtPi, 0, 0};
     const Wide ea = exp_minus(a * a), ec = exp_minus(c * c);
     const Wide e = portable::kSqrtPi - ea * tails(-a).area - ec * tails(c).area;
     return {c * e + (ec - ea) / 2, (delta * ea - e) / 2, e, (ea - ec) / 2, 0};

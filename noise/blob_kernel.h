@@ -29,6 +29,7 @@
 ///   beyond  c <= 0                   moment(-c) - e^{c²-a²} (moment(-a) + δ area(-a))     < 2 digits
 ///   inside  a < 0 < c                c E + (e^{-c²} - e^{-a²})/2,                         < 2 digits
 ///                                    E = √π - e^{-a²} area(-a) - e^{-c²} area(c)
+///   whole   a < -8, 8 < c            c √π: the tails are below 1e-27                      nothing
 ///
 /// Each form has the bound's error, over the whole of its region. Exponents, lengths and factors are long double, on
 /// x86-64 the 80-bit format, + - * / of which give the same bits on every processor: so exponents keep their digits
@@ -36,8 +37,8 @@
 ///
 /// Finite for every finite input: what exceeds the doubles saturates at ±DBL_MAX. u <= 0 or sigma <= 0 give zero.
 ///
-/// Cost: 0.18 (behind, beyond) to 0.25 µs (across) a call of `perturb`, 0.06 µs where all vanishes, on a loaded server
-/// core. For pixels see the single-precision noise/blob_profile.h.
+/// Cost: 0.18 (behind, beyond) to 0.25 µs (across) a call of `perturb`, 0.06 µs where all vanishes or all is passed, on
+/// a loaded server core. For pixels see the single-precision noise/blob_profile.h.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -13,7 +13,6 @@
 #include <utility>
 #include <variant>
 
-#include "noise/blob_instant.h"
 #include "noise/blobs.h"
 #include "noise/error.h"
 #include "noise/gradient_noise.h"
@@ -30,6 +29,12 @@ namespace {
 
 /// A step is at most this part of a feature's size.
 constexpr double kPartOfCell = 0.5, kPartOfDropoff = 0.25, kPartOfProfile = 0.125;
+/// So many longest steps are one of a method that controls its error.
+constexpr double kStride = 2, kLatticeStride = 3;
+/// Beyond this change of the index there is no speaking of first order.
+constexpr double kStraightest = 0.5;
+/// Of the whole way: what a straight walk over the ends of slabs may lose to rounding.
+constexpr double kWalked = 1e-12;
 /// Bytes a node of a snapshot while it is made: its spectrum, samples and coefficients.
 constexpr double kSnapshotBytes = 12;
 
@@ -56,10 +61,10 @@ struct TurbulenceBounds {
 };
 
 struct LatticeInstant : TurbulenceBounds {
-    LatticeSnapshot snapshot;
+    std::shared_ptr<const LatticeSnapshot> snapshot;
 
-    IndexSample sample(const dvec3& x) const { return snapshot.smooth_sample(x); }
-    IndexJet jet(const dvec3& x) const { return snapshot.jet(x); }
+    IndexSample sample(const dvec3& x) const { return snapshot->smooth_sample(x); }
+    IndexJet jet(const dvec3& x) const { return snapshot->jet(x); }
 };
 
 struct NoiseInstant : TurbulenceBounds {
@@ -92,10 +97,15 @@ struct SurfaceInstant {
 
 struct BlobsInstant {
     BlobInstant blobs;
+    double factor;  ///< F/∇(n - n_ambient) where n is the ambient's, this medium's exaggeration in it
+    double square;  ///< what it is off by at most, relative, for an n - n_ambient of 1
 
     IndexSample sample(const dvec3& x) const { return blobs.sample(x); }
     IndexJet jet(const dvec3& x) const { return blobs.jet(x); }
     double longest_step(const dvec3& x, const dvec3&) const { return blobs.longest_step(x); }
+    double longest_stride(const dvec3& x, const dvec3& d, double turn) const {
+        return blobs.longest_stride(x, d, turn / std::abs(factor));
+    }
     double clear_way(const dvec3& x, const dvec3& d) const { return blobs.clear_way(x, d); }
     double way_to_edge(const dvec3&, const dvec3&) const { return kNever; }
 };
@@ -122,7 +132,13 @@ struct ScreenMedium {
     std::optional<Falloff> falloff;
 };
 using Medium = std::variant<LatticeMedium, GradientNoiseField, ScreenMedium, SurfaceLayer, BlobCloud, Profile>;
-using Instant = std::variant<LatticeInstant, NoiseInstant, SurfaceInstant, BlobsInstant, ProfileInstant>;
+using AnyInstant = std::variant<LatticeInstant, NoiseInstant, SurfaceInstant, BlobsInstant, ProfileInstant>;
+
+/// A medium and what its n - n_ambient is multiplied by, beside the exaggeration.
+struct Instant {
+    AnyInstant medium;
+    double weight = 1;
+};
 
 /// What turns the sum of the media into force.
 struct Laws {
@@ -132,6 +148,11 @@ struct Laws {
 
     /// What multiplies ∇(n_i - n_ambient) where n is near 1.
     double strength() const { return exaggeration * (equation == RayEquation::Paper ? 0.5 : 1); }
+    /// |dx/du| where the index is 1 + n.
+    double speed(double n) const {
+        const double index = std::max(0.0, 1 + n);
+        return equation == RayEquation::Paper ? std::sqrt(index) : index;
+    }
 };
 
 bool has_strength(const TurbulenceSpec& spec) {
@@ -157,7 +178,7 @@ struct FieldInstant::State {
     template <class Jet, class Take>
     Jet sum(Take&& take) const {
         Jet total{};
-        for (const Instant& medium : media) std::visit([&](const auto& m) { add(total, take(m)); }, medium);
+        for (const Instant& i : media) std::visit([&](const auto& m) { add(total, take(m), i.weight); }, i.medium);
         total.n = laws.ambient + laws.exaggeration * total.n;
         if (!(total.n > -1)) return Jet{std::max(total.n, -kLargestIndex)};
         scale(total, laws.exaggeration);
@@ -174,21 +195,48 @@ struct FieldInstant::State {
     template <class Ask>
     double least(Ask&& ask) const {
         double result = kNever;
-        for (const Instant& medium : media)
-            std::visit([&](const auto& m) { result = std::min(result, ask(m)); }, medium);
+        for (const Instant& i : media) std::visit([&](const auto& m) { result = std::min(result, ask(m)); }, i.medium);
         for (const ScreenForce& s : screens) result = std::min(result, ask(s));
         return result;
     }
 
-  private:
-    static void add(IndexSample& a, const IndexSample& b) {
-        a.n += b.n;
-        a.gradient += b.gradient;
+    void add(FieldPart part) {
+        const double weight = part.weight;
+        if (auto* lattice = std::get_if<LatticePart>(&part.medium)) {
+            media.push_back({LatticeInstant{{lattice->field->spec().falloff, lattice_step(*lattice->field)},
+                                            std::move(lattice->snapshot)},
+                             weight});
+        } else if (const auto* noise = std::get_if<NoisePart>(&part.medium)) {
+            media.push_back(
+                {NoiseInstant{
+                     {noise->field->falloff(), kPartOfCell * noise->field->smallest_cell()}, noise->field, noise->t},
+                 weight});
+        } else if (auto* thin = std::get_if<ScreensPart>(&part.medium)) {
+            screens.emplace_back(*thin->field, std::move(thin->screens), thin->frame, thin->falloff,
+                                 weight * laws.strength());
+        } else if (const auto* surface = std::get_if<const SurfaceLayer*>(&part.medium)) {
+            const double n =
+                1 + laws.ambient + std::max(0.0, laws.exaggeration * weight * (*surface)->above_ambient(0));
+            media.push_back(
+                {SurfaceInstant{*surface, std::abs(weight * laws.strength()) * (*surface)->largest_slope() * n},
+                 weight});
+        } else {
+            const auto& [blobs, reach] = std::get<BlobsPart>(part.medium);
+            const double strength = weight * laws.strength();
+            const double n = laws.equation == RayEquation::Paper ? 1 : 1 + laws.ambient;
+            media.push_back({BlobsInstant{BlobInstant(blobs, reach), strength * n, std::abs(strength)}, weight});
+        }
     }
-    static void add(IndexJet& a, const IndexJet& b) {
-        a.n += b.n;
-        a.gradient += b.gradient;
-        a.hessian += b.hessian;
+
+  private:
+    static void add(IndexSample& a, const IndexSample& b, double weight) {
+        a.n += weight * b.n;
+        a.gradient += weight * b.gradient;
+    }
+    static void add(IndexJet& a, const IndexJet& b, double weight) {
+        a.n += weight * b.n;
+        a.gradient += weight * b.gradient;
+        a.hessian += weight * b.hessian;
     }
     static void scale(IndexSample& a, double factor) { a.gradient *= factor; }
     static void scale(IndexJet& a, double factor) {
@@ -199,13 +247,18 @@ struct FieldInstant::State {
 
 FieldInstant::FieldInstant(std::unique_ptr<State> state) : state_(std::move(state)) {}
 FieldInstant::FieldInstant(FieldInstant&&) noexcept = default;
+FieldInstant& FieldInstant::operator=(FieldInstant&&) noexcept = default;
 FieldInstant::~FieldInstant() = default;
 
 dvec3 FieldInstant::force(const dvec3& x, const dvec3& p) const {
+    return motion(x, p).force;
+}
+
+FieldInstant::Motion FieldInstant::motion(const dvec3& x, const dvec3& p) const {
     const IndexSample s = state_->sample(x);
-    dvec3 force = (state_->laws.equation == RayEquation::Paper ? 0.5 : 1 + s.n) * s.gradient;
-    for (const ScreenForce& screens : state_->screens) force += screens.force(x, p);
-    return force;
+    Motion m{(state_->laws.equation == RayEquation::Paper ? 0.5 : 1 + s.n) * s.gradient, state_->laws.speed(s.n)};
+    for (const ScreenForce& screens : state_->screens) m.force += screens.force(x, p);
+    return m;
 }
 
 ForceJet FieldInstant::force_jet(const dvec3& x, const dvec3& p) const {
@@ -232,8 +285,7 @@ double FieldInstant::refractivity(const dvec3& x) const {
 }
 
 double FieldInstant::speed(const dvec3& x) const {
-    const double n = std::max(0.0, 1 + refractivity(x));
-    return state_->laws.equation == RayEquation::Paper ? std::sqrt(n) : n;
+    return state_->laws.speed(refractivity(x));
 }
 
 double FieldInstant::longest_step(const dvec3& x, const dvec3& d) const {
@@ -250,6 +302,40 @@ double FieldInstant::longest_step(const dvec3& x) const {
     });
 }
 
+double FieldInstant::longest_stride(const dvec3& x, const dvec3& d, double turn) const {
+    return state_->least([&](const auto& m) {
+        using M = std::decay_t<decltype(m)>;
+        if constexpr (std::is_same_v<M, BlobsInstant>)
+            return m.longest_stride(x, d, turn);
+        else if constexpr (std::is_same_v<M, LatticeInstant>)
+            return kLatticeStride * m.longest_step(x, d);
+        else
+            return kStride * m.longest_step(x, d);
+    });
+}
+
+std::optional<FieldInstant::Pull> FieldInstant::pull(const dvec3& x, const dvec3& d, double distance,
+                                                     double turn) const {
+    Pull sum;
+    for (const Instant& medium : state_->media) {
+        const auto* blobs = std::get_if<BlobsInstant>(&medium.medium);
+        if (!blobs) return {};
+        const BlobInstant::Bend bend = blobs->blobs.bend(x, d, distance, turn / std::abs(blobs->factor));
+        sum.value += blobs->factor * bend.x1;
+        sum.error += blobs->square * bend.largest;
+    }
+    // F is constant along a straight ray within a slab.
+    for (const ScreenForce& screens : state_->screens) {
+        for (double w = 0; w < distance;) {
+            const double way = std::min(screens.way_to_edge(x + w * d, d), distance - w);
+            sum.value += way * (distance - w - 0.5 * way) * screens.force(x + (w + 0.5 * way) * d, d);
+            w += way + kWalked * distance;
+        }
+    }
+    if (!(sum.error < kStraightest)) return {};
+    return sum;
+}
+
 double FieldInstant::clear_way(const dvec3& x, const dvec3& d) const {
     return state_->least([&](const auto& m) { return m.clear_way(x, d); });
 }
@@ -264,17 +350,19 @@ struct Field::State {
     std::uint64_t memory;  ///< left of what is allowed
     double interpolation_error = 0;
     std::vector<Medium> media;
+    std::vector<std::string> notes;
 
     void take(std::uint64_t bytes) { memory -= std::min(memory, bytes); }
 
-    void add(const TurbulenceSpec& spec) {
-        if (!has_strength(spec)) return;
+    // Each adds a medium, and says what has become of it.
+    std::string add(const TurbulenceSpec& spec) {
+        if (!has_strength(spec)) return "left out, its strength is zero";
         switch (spec.form) {
             case TurbulenceForm::Lattice:
                 return add_lattice(spec);
             case TurbulenceForm::GradientNoise:
                 media.emplace_back(GradientNoiseField(spec));
-                return;
+                return "gradient noise, not periodic";
             case TurbulenceForm::Screens:
                 break;
         }
@@ -282,10 +370,14 @@ struct Field::State {
         std::vector<ScreenGeometry> geometry = layout_screens(spec, frame->view);
         check_screens(spec, geometry, memory);
         take(screens_bytes(spec, geometry));
+        const ScreenGeometry middle = geometry[geometry.size() / 2];
+        std::string note = fmt::format("{} thin screens of {} x {} x {} samples, {:.3g} m apart", geometry.size(),
+                                       middle.nx, middle.ny, middle.nt, middle.thickness);
         media.emplace_back(ScreenMedium{ScreenField(spec, std::move(geometry), frame->right, frame->up), spec.falloff});
+        return note;
     }
 
-    void add_lattice(const TurbulenceSpec& spec) {
+    std::string add_lattice(const TurbulenceSpec& spec) {
         const LatticeGeometry geometry = choose_lattice(spec);
         check_lattice(spec, geometry, memory);
         take(lattice_bytes(spec, geometry));
@@ -303,16 +395,25 @@ struct Field::State {
         take(static_cast<std::uint64_t>(bytes(padding)));
         interpolation_error = std::max(interpolation_error, error);
         media.emplace_back(LatticeMedium{std::move(field), padding});
+        return fmt::format("lattice {} x {} x {} x {}, its spline {} times finer, whose force is off by {:.2g} of its rms",
+                           geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3], padding, error);
     }
 
-    void add(const SurfaceSpec& spec, const IndexLaw& law) {
+    std::string add(const SurfaceSpec& spec, const IndexLaw& law) {
         SurfaceLayer layer(spec, law);
-        if (layer.bends()) media.emplace_back(std::move(layer));
+        if (!layer.bends()) return "left out, the surface is at ambient temperature";
+        std::string note = fmt::format("{} surface, a layer {:.3g} m high",
+                                       layer.above_ambient(0) < 0 ? "hot" : "cold", layer.top());
+        media.emplace_back(std::move(layer));
+        return note;
     }
 
-    void add(const BlobsSpec& spec, const IndexLaw& law, const std::string& name) {
+    std::string add(const BlobsSpec& spec, const IndexLaw& law, const std::string& name) {
         BlobCloud cloud(spec, law, name);
-        if (cloud.most() > 0) media.emplace_back(std::move(cloud));
+        if (!(cloud.most() > 0)) return "left out, it has no blobs";
+        std::string note = fmt::format("up to {} blobs at a time", cloud.most());
+        media.emplace_back(std::move(cloud));
+        return note;
     }
 };
 
@@ -332,55 +433,62 @@ Field::Field(const std::vector<MediumSpec>& media, const OpticsSpec& optics, con
                                 i, media.size() == 2 ? "medium" : "media"));
             state_->laws = {optics.ray_equation, 0, 1};
             state_->media.emplace_back(Profile(*profile));
+            state_->notes.emplace_back("medium.0: a profile, the absolute index of all space");
             return;
         }
-        if (optics.exaggeration == 0) continue;
         const std::string name = fmt::format("medium.{}", i);
-        if (const auto* blobs = std::get_if<BlobsSpec>(&media[i])) state_->add(*blobs, law, name);
-        if (const auto* surface = std::get_if<SurfaceSpec>(&media[i])) state_->add(*surface, law);
-        if (const auto* turbulence = std::get_if<TurbulenceSpec>(&media[i])) {
-            try {
-                state_->add(*turbulence);
-            } catch (const UserError& error) {
-                throw UserError(name + ": " + error.what());
+        std::string note = "left out, optics.exaggeration is zero";
+        if (optics.exaggeration != 0) {
+            if (const auto* blobs = std::get_if<BlobsSpec>(&media[i])) note = state_->add(*blobs, law, name);
+            if (const auto* surface = std::get_if<SurfaceSpec>(&media[i])) note = state_->add(*surface, law);
+            if (const auto* turbulence = std::get_if<TurbulenceSpec>(&media[i])) {
+                try {
+                    note = state_->add(*turbulence);
+                } catch (const UserError& error) {
+                    throw UserError(name + ": " + error.what());
+                }
             }
         }
+        state_->notes.push_back(name + ": " + note);
     }
 }
 
 Field::~Field() = default;
 Field::Field(Field&&) noexcept = default;
 
+FieldInstant::FieldInstant(const OpticsSpec& optics, std::vector<FieldPart> parts) : state_(std::make_unique<State>()) {
+    state_->laws = {optics.ray_equation, index_law(optics).ambient(), optics.exaggeration};
+    for (FieldPart& part : parts) state_->add(std::move(part));
+}
+
 FieldInstant Field::at(double t) const {
     auto instant = std::make_unique<FieldInstant::State>();
     instant->owner = state_;
     instant->laws = state_->laws;
-    const Laws& laws = state_->laws;
     for (const Medium& medium : state_->media) {
-        if (const auto* lattice = std::get_if<LatticeMedium>(&medium)) {
-            instant->media.emplace_back(LatticeInstant{{lattice->field.spec().falloff, lattice_step(lattice->field)},
-                                                       LatticeSnapshot(lattice->field, t, lattice->padding)});
-        } else if (const auto* noise = std::get_if<GradientNoiseField>(&medium)) {
-            instant->media.emplace_back(
-                NoiseInstant{{noise->falloff(), kPartOfCell * noise->smallest_cell()}, noise, t});
-        } else if (const auto* screens = std::get_if<ScreenMedium>(&medium)) {
-            instant->screens.emplace_back(screens->field, t, *state_->frame, screens->falloff, laws.strength());
-        } else if (const auto* surface = std::get_if<SurfaceLayer>(&medium)) {
-            const double n = 1 + laws.ambient + std::max(0.0, laws.exaggeration * surface->above_ambient(0));
-            instant->media.emplace_back(
-                SurfaceInstant{surface, std::abs(laws.strength()) * surface->largest_slope() * n});
-        } else if (const auto* cloud = std::get_if<BlobCloud>(&medium)) {
-            const std::vector<Blob> blobs = cloud->at(t);
-            instant->media.emplace_back(BlobsInstant{BlobInstant(blobs)});
-        } else {
-            instant->media.emplace_back(ProfileInstant{&std::get<Profile>(medium)});
-        }
+        if (const auto* lattice = std::get_if<LatticeMedium>(&medium))
+            instant->add({LatticePart{&lattice->field,
+                                      std::make_shared<const LatticeSnapshot>(lattice->field, t, lattice->padding)}});
+        else if (const auto* noise = std::get_if<GradientNoiseField>(&medium))
+            instant->add({NoisePart{noise, t}});
+        else if (const auto* screens = std::get_if<ScreenMedium>(&medium))
+            instant->add({ScreensPart{&screens->field, screens->field.at(t), *state_->frame, screens->falloff}});
+        else if (const auto* surface = std::get_if<SurfaceLayer>(&medium))
+            instant->add({surface});
+        else if (const auto* cloud = std::get_if<BlobCloud>(&medium))
+            instant->add({BlobsPart{cloud->at(t)}});
+        else
+            instant->media.push_back({ProfileInstant{&std::get<Profile>(medium)}});
     }
     return FieldInstant(std::move(instant));
 }
 
 bool Field::bends() const {
     return !state_->media.empty();
+}
+
+const std::vector<std::string>& Field::notes() const {
+    return state_->notes;
 }
 
 double Field::interpolation_error() const {

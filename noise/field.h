@@ -21,11 +21,17 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
+#include "noise/blob_instant.h"
+#include "noise/gradient_noise.h"
 #include "noise/index_sample.h"
+#include "noise/lattice_snapshot.h"
 #include "noise/media.h"
-#include "noise/screen_layout.h"
+#include "noise/screens.h"
+#include "noise/surface.h"
 
 namespace eikonal {
 
@@ -45,11 +51,43 @@ struct ForceJet {
 /// Rms error of a lattice's F between its nodes, relative to the rms F, that its splines are padded for.
 inline constexpr double kInterpolationError = 1e-3;
 
+/// Media that are frozen already, for a field put together of them. What is pointed to must outlive the field.
+struct LatticePart {
+    const LatticeField* field;
+    std::shared_ptr<const LatticeSnapshot> snapshot;
+};
+struct NoisePart {
+    const GradientNoiseField* field;
+    double t;  ///< [s]
+};
+struct ScreensPart {
+    const ScreenField* field;
+    std::vector<ScreenSnapshot> screens;  ///< of that field
+    ScreenFrame frame;
+    std::optional<Falloff> falloff;
+};
+struct BlobsPart {
+    std::vector<Blob> blobs;
+    double reach = kBlobReach;  ///< where they end [σ]
+};
+struct FieldPart {
+    std::variant<LatticePart, NoisePart, ScreensPart, const SurfaceLayer*, BlobsPart> medium;
+    double weight = 1;  ///< multiplies n - n_ambient, beside the exaggeration
+};
+
 class FieldInstant {
   public:
+    FieldInstant(const OpticsSpec& optics, std::vector<FieldPart> parts);
+
     /// F [1/m] at x for a ray whose dx/du is p.
     dvec3 force(const dvec3& x, const dvec3& p) const;
     ForceJet force_jet(const dvec3& x, const dvec3& p) const;
+    /// F and |dx/du| in one, for half the price.
+    struct Motion {
+        dvec3 force;
+        double speed;
+    };
+    Motion motion(const dvec3& x, const dvec3& p) const;
 
     /// n - 1 at x. At most -1 where a scene's exaggeration leaves no index: rays must end there.
     double refractivity(const dvec3& x) const;
@@ -62,6 +100,17 @@ class FieldInstant {
     /// The same along the unit direction d of a ray: much longer over a surface, along which little changes. (Bending
     /// by other media is taken for small within a step, which their own features bound.)
     double longest_step(const dvec3& x, const dvec3& d) const;
+    /// The longest step [m] from x along the unit direction d of a method that controls its error and evaluates F no
+    /// further apart than half of it: it notices all that turns a ray by `turn` [rad] > 0 or more.
+    double longest_stride(const dvec3& x, const dvec3& d, double turn) const;
+    /// ∫₀^D (D - w) F dw along the straight ray from x, unit direction d, D = distance > 0 [m], in closed form, where
+    /// blobs and thin screens are all there is (*added*). Blobs that turn a ray by less than `turn` [rad] are left out,
+    /// and the n of F = n∇n is the ambient's.
+    struct Pull {
+        dvec3 value{0, 0, 0};  ///< [m]
+        double error = 0;      ///< relative: of the second order, bound of |n - n_ambient| on the way
+    };
+    std::optional<Pull> pull(const dvec3& x, const dvec3& d, double distance, double turn) const;
     /// Length of the way from x along the unit direction d that lies outside the bounds of every medium, hence is
     /// straight: 0 inside one; infinity if none is ever met. A lattice or gradient noise has no bounds but those of a
     /// falloff, which ends at g = kNegligibleIndex upward and nowhere downward.
@@ -73,6 +122,7 @@ class FieldInstant {
     double way_to_edge(const dvec3& x, const dvec3& d) const;
 
     FieldInstant(FieldInstant&&) noexcept;
+    FieldInstant& operator=(FieldInstant&&) noexcept;
     ~FieldInstant();
 
   private:
@@ -94,6 +144,9 @@ class Field {
 
     /// Every medium at time t [s], any finite.
     FieldInstant at(double t) const;
+
+    /// One line a medium, "medium.N: …": what it has been made into, or why it is left out.
+    const std::vector<std::string>& notes() const;
 
     /// Whether any medium can bend anything: false for an empty scene or one whose media have no strength.
     bool bends() const;

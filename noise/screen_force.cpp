@@ -29,9 +29,9 @@ struct ScreenForce::Meeting {
     double xx, xy, yy;  ///< Hessian
 };
 
-ScreenForce::ScreenForce(const ScreenField& field, double t, const ScreenFrame& frame,
+ScreenForce::ScreenForce(const ScreenField& field, std::vector<ScreenSnapshot> screens, const ScreenFrame& frame,
                          const std::optional<Falloff>& falloff, double strength)
-    : frame_(frame), falloff_(falloff), strength_(strength), screens_(field.at(t)) {
+    : frame_(frame), falloff_(falloff), strength_(strength), screens_(std::move(screens)) {
     ends_.push_back(screens_.front().w() - 0.5 * screens_.front().thickness());
     for (std::size_t m = 0; m < screens_.size(); ++m) {
         const double thickness = screens_[m].thickness();

@@ -25,8 +25,9 @@ inline constexpr double kSteepestRay = 100;
 class ScreenForce {
   public:
     /// strength: multiplies ∇ψ (ray equation and exaggeration). The frame's axes are those of `field`.
-    ScreenForce(const ScreenField& field, double t, const ScreenFrame& frame, const std::optional<Falloff>& falloff,
-                double strength);
+    /// screens: an instant of `field`.
+    ScreenForce(const ScreenField& field, std::vector<ScreenSnapshot> screens, const ScreenFrame& frame,
+                const std::optional<Falloff>& falloff, double strength);
 
     dvec3 force(const dvec3& x, const dvec3& p) const;
     ForceJet force_jet(const dvec3& x, const dvec3& p) const;

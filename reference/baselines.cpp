@@ -100,7 +100,7 @@ BentHit trace_layers(const FieldInstant& field, const Geometry* geometry, const 
         const double way = slices.way(ray.x, ray.p, number), remaining = remaining_way(settings, ray, result.length);
         const Step step = straight_step(ray, std::min(way, remaining));
         if (recorder) recorder(step);
-        if (const auto met = search.add(step, kink)) return end_at(result, *met);
+        if (const auto met = search.add(step, step.length(), kink)) return end_at(result, *met);
         ray = step.to();
         result.length += std::min(way, remaining);
         if (way >= remaining) break;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "noise/portable_math.h"
 #include "reference/baselines.h"
 #include "reference/perturbation.h"
 
@@ -17,16 +16,22 @@ constexpr double kSamePlace = 1e-12;
 /// F counts as constant up to an edge where that changes the direction by less [rad].
 constexpr double kEdgeTurn = 1e-12;
 
-/// A step of adaptive evaluates F at 0, 0.2, 0.3, 0.8, 0.89 and 1 of itself: this many of a field's longest steps leave
-/// no wider gap between.
-constexpr double kStretch = 2;
 /// A step may grow to this many times the last one, where the error is below this part of what is allowed.
-constexpr double kMostGrowth = 3.5, kMostGrowthError = 1e-3;
+constexpr double kMostGrowth = 2, kMostGrowthError = 0.018;
 /// How far before an edge its direction is probed, in parts of the longest step.
 constexpr double kProbe = 1e-3;
 
 bool finite(const dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// x^(1/5) of a positive normal x, at most 1 % too small: along the chord from one power of two to the next.
+double fifth_root(double x) {
+    constexpr std::array<double, 5> kRoots = {1, 1.148698354997035, 1.3195079107728942, 1.5157165665103982,
+                                              1.7411011265922482};
+    const int exponent = std::ilogb(x), fifth = (exponent + 5 * 1000) / 5 - 1000;
+    const double chord = 1 + (kRoots[1] - 1) * (std::scalbn(x, -exponent) - 1);
+    return std::scalbn(chord * kRoots[static_cast<std::size_t>(exponent - 5 * fifth)], fifth);
 }
 
 class Tracer {
@@ -52,7 +57,6 @@ class Tracer {
     bool accept(const Step& step);
     double error(const Step& step, double speed) const;
     double same_place() const;
-    double quiet_height() const;
     double clear_way() const;
     double nudge(double way);
     void enter(double reach, const dvec3& before);
@@ -67,9 +71,10 @@ class Tracer {
 
     const FieldInstant& field_;
     const TraceSettings& settings_;
-    double tolerance_;  ///< [rad or m]
+    double tolerance_;       ///< [rad or m]
+    double longest_ = 0;     ///< way [m]
+    double quiet_turn_ = 0;  ///< that does not matter [rad]
     const LoneSurface* lone_ = nullptr;
-    double quiet_ = 0;  ///< height above the lone surface [m]
     Bundle* bundle_;
     const StepRecorder& recorder_;
     SurfaceSearch search_;
@@ -94,21 +99,15 @@ double Tracer::error(const Step& step, double speed) const {
     const double x = glm::length(step.error_x), p = glm::length(step.error_p) / speed;
     const double s = result_.length + step.h * speed;
     if (settings_.perspective) return x / (settings_.distance + s) + p;
-    const double ahead = std::min(settings_.far - s, (settings_.u_end - step.from.u - step.h) * speed);
+    const double ahead =
+        std::min(std::min(settings_.far, settings_.sight) - s, (settings_.u_end - step.from.u - step.h) * speed);
     return x + p * std::max(ahead, 0.0);
-}
-
-/// A force F all the way L displaces by at most F L/2 as an angle, F L²/2 in metres.
-double Tracer::quiet_height() const {
-    const double longest = std::min(settings_.far, settings_.u_end * launch_speed_);
-    const double allowed = 2 * tolerance_ / kQuietShare / longest;
-    return lone_->quiet_height(settings_.perspective ? allowed : allowed / longest);
 }
 
 /// Way that is straight.
 double Tracer::clear_way() const {
     if (lone_) {
-        const double way = lone_->clear_way(state_.x, glm::normalize(state_.p), quiet_);
+        const double way = lone_->clear_way(state_.x, glm::normalize(state_.p), quiet_turn_, longest_);
         if (way > 0) return way;
     }
     // Where F is not nothing a medium is, and no need to ask.
@@ -127,9 +126,10 @@ bool Tracer::accept(const Step& step) {
         advance(field_, step, 1, *bundle_);
     }
     if (recorder_) recorder_(step);
-    result_.length += step.length();
+    const double length = step.length();
+    result_.length += length;
     state_ = step.to();
-    if (const auto met = search_.add(step)) {
+    if (const auto met = search_.add(step, length)) {
         finish(*met);
         return true;
     }
@@ -185,9 +185,9 @@ std::optional<BentHit::End> Tracer::go_bent() {
     const bool adaptive = settings_.integrator == Integrator::Adaptive;
     const double speed = glm::length(state_.p);
     const dvec3 d = state_.p / speed;
-    const double feature = field_.longest_step(state_.x, d);
-    double length = std::min({adaptive ? kStretch * feature : feature, settings_.far - result_.length,
-                              (settings_.u_end - state_.u) * speed});
+    const double feature =
+        adaptive ? field_.longest_stride(state_.x, d, quiet_turn_) : field_.longest_step(state_.x, d);
+    double length = std::min({feature, settings_.far - result_.length, (settings_.u_end - state_.u) * speed});
     if (settings_.step > 0) length = std::min(length, settings_.step * (speed / launch_speed_));
     if (adaptive) length = std::min(length, proposed_);
     const double place = same_place(), edge = field_.way_to_edge(state_.x, d);
@@ -213,10 +213,9 @@ std::optional<BentHit::End> Tracer::go_bent() {
         off = error(step, speed);
         if (!adaptive) break;
         // The error of order 4 goes with h^5.
-        const double allowed = tolerance_ / kStepShare;
+        const double allowed = tolerance_ / (lone_ ? kStepShareOverSurface : kStepShare);
         double factor = kMostGrowth;
-        if (!(off <= kMostGrowthError * allowed))
-            factor = std::isfinite(off) ? 0.9 * portable::pow(allowed / off, 0.2) : 0;
+        if (!(off <= kMostGrowthError * allowed)) factor = std::isfinite(off) ? 0.9 * fifth_root(allowed / off) : 0;
         if (off <= allowed || h * speed <= place) {
             const double next = h * speed * std::max(factor, 0.2);
             proposed_ = cut && factor > 1 ? std::max(next, proposed_) : next;
@@ -243,8 +242,9 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
         return result_;
     }
     state_.p = launch_speed_ * direction;
-    force_ = field_.force(state_.x, state_.p);
-    if (lone_) quiet_ = quiet_height();
+    longest_ = std::min(settings_.far, settings_.u_end * launch_speed_);
+    quiet_turn_ = tolerance_ / kQuietShare / (settings_.perspective ? 1 : std::min(longest_, settings_.sight));
+    if (bundle_ || !(clear_way() > 0)) force_ = field_.force(state_.x, state_.p);
     if (bundle_) *bundle_ = launch(*bundle_, state_, force_);
     std::optional<End> end;
     while (!end) {

@@ -3,15 +3,15 @@
 /// Directions are traced from the camera outwards. Positions in world metres; angles in radians; double throughout. The
 /// ray starts with |dx/du| = FieldInstant::speed at its origin.
 ///
-/// Steps: F is evaluated at places never further apart than FieldInstant::longest_step (that is the step itself but for
-/// `adaptive`, twice as long), so that no feature of the index is passed over unseen; they end
-/// where F jumps (way_to_edge) and go on beyond, so that each method keeps its order (integrator.h); outside every
-/// medium the ray is one straight segment (clear_way). `adaptive` further keeps the local error of every step, as the
-/// final displacement it can cause, below 1/kStepShare of the tolerance. For a perspective camera, errors δx at path
-/// length s and δp cause at most (|δx|/s + |δp|/|p|) / pixel; for an orthographic one (|δx| + |δp|/|p| (end - s)) /
-/// pixel, where end is the longest path that settings allow. BentHit::error_px is their sum over all steps: it bounds
-/// the displacement's error as far as the method's own estimate does, which for `adaptive` is that of order 4,
-/// pessimistic, and except where the field itself spreads rays apart.
+/// Steps: a method of fixed steps takes FieldInstant::longest_step, `adaptive` at most longest_stride, so that no
+/// feature of the index is passed over unseen; they end where F jumps (way_to_edge) and go on beyond, so that each
+/// method keeps its order (integrator.h); outside every medium the ray is one straight segment (clear_way). `adaptive`
+/// further keeps the local error of every step, as the final displacement it can cause, below 1/kStepShare of the
+/// tolerance. For a perspective camera, errors δx at path length s and δp cause at most (|δx|/s + |δp|/|p|) / pixel;
+/// for an orthographic one (|δx| + |δp|/|p| (end - s)) / pixel, where end is `sight` or the longest path that settings allow.
+/// BentHit::error_px is their sum over all steps: it is about the displacement's error where steps are few to a
+/// feature, pessimistic (that of order 4) where they are many, and knows nothing of chords and of a field that spreads
+/// rays apart. Against 1e-6 pixels the displacement's error stays below the tolerance (README, How fast).
 ///
 /// Surfaces: surface_search.h; chords deviate from the curve by less than a quarter of the tolerance for a steady
 /// bend (half of it for any).
@@ -32,9 +32,11 @@
 
 namespace eikonal::reference {
 
-/// Of the local error that adaptive allows a step.
-inline constexpr double kStepShare = 8;
-/// See TraceSettings::lone.
+/// A step of adaptive may err by this part of the tolerance. Over a lone surface the estimate never misses the error,
+/// elsewhere steps as long as a feature may be lucky.
+inline constexpr double kStepShare = 32, kStepShareOverSurface = 5;
+/// What turns a ray by less than this part of the tolerance does not matter: a blob to adaptive's choice of steps (its
+/// force counts all the same) and to first order, air over a lone surface, and what first order redirects a ray by.
 inline constexpr double kQuietShare = 100;
 /// The finest tolerance, tolerance_px * pixel, that is of use: tighter ones count as this [rad or m].
 inline constexpr double kFinestTolerance = 1e-13;
@@ -52,12 +54,15 @@ struct TraceSettings {
     double step = 0;
     int step_budget = 100000;  ///< attempts of steps > 0
     double far = 1e6;          ///< a ray that met nothing on this length of path ends [m] > 0
+    /// Length of path by which an error of direction displaces an orthographic ray, at most: that to the farthest thing
+    /// in sight [m] > 0.
+    double sight = std::numeric_limits<double>::infinity();
     double u_end = std::numeric_limits<double>::infinity();  ///< it ends at this parameter
     double distance = 0;  ///< path from the camera to the ray's origin, for secondary rays [m] >= 0
     /// For `layers` and `mirror`: baseline_surface() of baselines.h.
     std::optional<SurfaceSpec> surface;
     /// The field's only medium, if that is a surface: for speed, may be left out. Where all that it can bend a ray by
-    /// is below 1/kQuietShare of the tolerance, adaptive goes straight; first-order takes its closed form.
+    /// does not matter adaptive goes straight; first-order takes its closed form.
     std::shared_ptr<const LoneSurface> lone;
 };
 

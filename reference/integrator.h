@@ -15,6 +15,8 @@
 #include <array>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <string_view>
+#include <utility>
 
 #include "noise/field.h"
 
@@ -22,6 +24,21 @@ namespace eikonal::reference {
 
 /// What `eikonal-trace --integrator` offers. The last four follow no bent ray: see baselines.h and perturbation.h.
 enum class Integrator { Adaptive, Rk4, Leapfrog, Euler, Layers, Mirror, FirstOrder, SecondOrder };
+
+inline constexpr std::array<std::pair<std::string_view, Integrator>, 8> kIntegratorNames{
+    {{"adaptive", Integrator::Adaptive},
+     {"rk4", Integrator::Rk4},
+     {"leapfrog", Integrator::Leapfrog},
+     {"euler", Integrator::Euler},
+     {"layers", Integrator::Layers},
+     {"mirror", Integrator::Mirror},
+     {"first-order", Integrator::FirstOrder},
+     {"second-order", Integrator::SecondOrder}}};
+constexpr std::string_view name_of(Integrator integrator) {
+    for (const auto& [name, value] : kIntegratorNames)
+        if (value == integrator) return name;
+    return "";
+}
 
 /// A point of a ray.
 struct RayState {

@@ -25,16 +25,28 @@ LoneSurface::LoneSurface(const SurfaceSpec& spec, const OpticsSpec& optics)
     largest_force_ = std::abs(force_strength(optics)) * layer_.largest_slope() * n;
 }
 
-/// Above the knee |n'| falls as e^{-h/d0} at least.
+/// Height above which |F| is below `force` [1/m]; at most that of the layer. Above the knee |n'| falls as e^{-h/d0} at
+/// least; the logarithm is rounded up to the next of a power of two.
 double LoneSurface::quiet_height(double force) const {
+    constexpr double kLn2 = 0.6931471805599453;
     const double ratio = largest_force_ / force;
     if (!(ratio > 1)) return 0;
-    return std::min(layer_.top(), layer_.knee() + layer_.dropoff() * portable::log(ratio));
+    if (!std::isfinite(ratio)) return layer_.top();
+    return std::min(layer_.top(), layer_.knee() + layer_.dropoff() * kLn2 * (std::ilogb(ratio) + 1));
 }
 
-double LoneSurface::clear_way(const dvec3& x, const dvec3& d, double top) const {
+/// A force F all the way L displaces by at most F L/2 as an angle. A ray that climbs c a metre is turned by all that is
+/// above it by at most F d0/c.
+double LoneSurface::clear_way(const dvec3& x, const dvec3& d, double turn, double longest) const {
+    const double climb = layer_.climb(d);
+    const double top = quiet_height(turn * std::max(2 / longest, std::abs(climb) / layer_.dropoff()));
     const double above = layer_.height(x) - top;
-    return above > kTouch * top ? way_to_plane(above, layer_.climb(d)) : 0;
+    return above > kTouch * top ? way_to_plane(above, climb) : 0;
+}
+
+bool LoneSurface::is_quiet(const dvec3& x, const dvec3& d, double distance, double force) const {
+    const double h0 = layer_.height(x);
+    return std::min(h0, h0 + layer_.climb(d) * distance) > quiet_height(force);
 }
 
 LoneSurface::AtHeight LoneSurface::at(double h) const {

@@ -24,10 +24,11 @@ class LoneSurface {
   public:
     LoneSurface(const SurfaceSpec& spec, const OpticsSpec& optics);
 
-    /// Height above which |F| is below `force` [1/m] > 0; at most that of the layer.
-    double quiet_height(double force) const;
-    /// Length of the way from x along the unit direction d that lies above `top` for good: 0 below it.
-    double clear_way(const dvec3& x, const dvec3& d, double top) const;
+    /// Length of the way from x along the unit direction d on which all that is above turns a ray by less than `turn`
+    /// [rad] > 0, however it goes on within `longest` metres: 0 if none.
+    double clear_way(const dvec3& x, const dvec3& d, double turn, double longest) const;
+    /// Whether |F| is below `force` [1/m] > 0 all along the straight ray from x, unit direction d, for sure.
+    bool is_quiet(const dvec3& x, const dvec3& d, double distance, double force) const;
 
     /// ∫₀^D (D - w) F dw along the straight ray from x, [m] in units of the index squared. Nothing for rays below the
     /// surface, for those that change their height by less than a part of the dropoff, where the form cancels, and
@@ -39,6 +40,7 @@ class LoneSurface {
         double g, P;
     };
     AtHeight at(double h) const;
+    double quiet_height(double force) const;
 
     SurfaceLayer layer_;
     IndexLaw law_;

@@ -4,14 +4,49 @@
 #define TINYOBJLOADER_USE_DOUBLE
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <glm/geometric.hpp>
+#include <sstream>
 
 #include "noise/error.h"
+#include "warp/scene/scene.h"
 
 namespace eikonal::reference {
 namespace {
+
+/// What lines of numbers begin with, and how many there are at least.
+constexpr std::pair<std::string_view, int> kNumbers[] = {{"v", 3}, {"vn", 3}, {"vt", 1}, {"Kd", 3}, {"Ke", 3}};
+
+/// UserError if a line that should hold numbers does not: tinyobjloader would take what it cannot read for 0. Leaves
+/// the stream at its start.
+void check_numbers(std::istream& stream, const std::filesystem::path& file) {
+    std::string text;
+    for (long line = 1; std::getline(stream, text); ++line) {
+        std::istringstream words(text.substr(0, text.find('#')));
+        std::string word;
+        words >> word;
+        const auto* const kind = std::find_if(std::begin(kNumbers), std::end(kNumbers),
+                                              [&](const auto& entry) { return entry.first == word; });
+        if (kind == std::end(kNumbers)) continue;
+        int count = 0;
+        for (; words >> word; ++count) {
+            const char *first = word.data() + (word.front() == '+'), *last = word.data() + word.size();
+            double value = 0;
+            const auto [end, error] = std::from_chars(first, last, value);
+            if (error != std::errc() || end != last || !(std::abs(value) <= kLargestValue))
+                throw UserError(fmt::format("{}:{}: {}: '{}' is not a number of at most {:g} in magnitude: repair it",
+                                            file.string(), line, kind->first, word, kLargestValue));
+        }
+        if (count < kind->second)
+            throw UserError(fmt::format("{}:{}: {} needs {} numbers and has {}: repair it", file.string(), line,
+                                        kind->first, kind->second, count));
+    }
+    stream.clear();
+    stream.seekg(0);
+}
 
 /// Reads material libraries and remembers what it could not open, where tinyobjloader would only warn.
 class MaterialReader : public tinyobj::MaterialReader {
@@ -25,6 +60,7 @@ class MaterialReader : public tinyobj::MaterialReader {
             missing_ = folder_ / name;
             return false;
         }
+        check_numbers(stream, folder_ / name);
         tinyobj::LoadMtl(index, materials, &stream, warnings, errors);
         return true;
     }
@@ -40,22 +76,9 @@ std::string first_line(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-bool finite(dvec3 p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
-dvec3 vector_at(const std::vector<double>& values, std::size_t i) {
-    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-}
-
-/// Copies a list of triples; UserError if one is not finite.
-std::vector<dvec3> vectors(const std::vector<double>& values, const char* what, const std::filesystem::path& file) {
+std::vector<dvec3> vectors(const std::vector<double>& values) {
     std::vector<dvec3> result(values.size() / 3);
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        result[i] = vector_at(values, i);
-        if (!finite(result[i]))
-            throw UserError(fmt::format("{}: {} {} is not finite: repair the mesh", file.string(), what, i + 1));
-    }
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
     return result;
 }
 
@@ -71,6 +94,7 @@ Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset) {
     std::ifstream stream(file);
     if (!stream || std::filesystem::is_directory(file))
         throw UserError(fmt::format("cannot read the mesh {}: give an existing .obj file", file.string()));
+    check_numbers(stream, file);
     tinyobj::attrib_t attrib;
     std::vector<tinyobj::shape_t> shapes;
     std::vector<tinyobj::material_t> materials;
@@ -83,18 +107,14 @@ Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset) {
     if (!ok) throw UserError(fmt::format("{}: not a valid OBJ file: {}", file.string(), first_line(errors)));
 
     Mesh mesh;
-    mesh.positions = vectors(attrib.vertices, "vertex", file);
+    mesh.positions = vectors(attrib.vertices);
     for (dvec3& p : mesh.positions) p = offset + scale * p;
-    mesh.colors = vectors(attrib.colors, "vertex colour", file);
+    mesh.colors = vectors(attrib.colors);
     mesh.colors.resize(mesh.positions.size(), dvec3(1));
-    mesh.normals = vectors(attrib.normals, "normal", file);
+    mesh.normals = vectors(attrib.normals);
     mesh.uvs.resize(attrib.texcoords.size() / 2);
-    for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+    for (std::size_t i = 0; i < mesh.uvs.size(); ++i)
         mesh.uvs[i] = {attrib.texcoords[2 * i], attrib.texcoords[2 * i + 1]};
-        if (!finite({mesh.uvs[i], 0}))
-            throw UserError(
-                fmt::format("{}: texture coordinate {} is not finite: repair the mesh", file.string(), i + 1));
-    }
     for (const tinyobj::material_t& m : materials) {
         MeshMaterial material{
             {m.diffuse[0], m.diffuse[1], m.diffuse[2]}, {m.emission[0], m.emission[1], m.emission[2]}, {}};

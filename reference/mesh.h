@@ -4,8 +4,8 @@
 /// triangulated), mtllib, usemtl; of a material Kd, Ke and map_Kd. Everything else is ignored. Colours are linear.
 /// Coordinates are metres after `scale` and `offset`. Triangles without area are left out.
 ///
-/// Failures: UserError naming the file, for a mesh or material library that is missing, unreadable, has no triangles,
-/// indices outside its lists, or coordinates that are not finite.
+/// Failures: UserError naming the file, for a mesh or material library that is missing, unreadable, has no triangles or
+/// indices outside its lists; naming file and line, for a v, vt, vn, Kd or Ke that is no list of finite numbers.
 #pragma once
 
 #include <array>

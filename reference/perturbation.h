@@ -10,9 +10,13 @@
 /// The ray is then redirected, as the paper renders: a straight one from the same origin towards D d + x1⊥(U), or, for
 /// an orthographic camera, a parallel one shifted by x1⊥(U). Second order takes x1⊥ + x2⊥ - x1'⊥ x1∥/|p0|, which is
 /// where the bent ray passes the plane through the straight one's end, across it. Error in the strength of the field:
-/// quadratic, and cubic. First order over nothing but a surface is closed form (lone_surface.h). Else the integrals are
-/// Simpson's, of order 4 in the step, over the same steps as a bent ray's; error_px is theirs alone. Nothing is known
-/// of what lies beside the straight ray.
+/// quadratic, and cubic. A ray that is not bent by what matters (kQuietShare) is not shot again.
+///
+/// First order over nothing but a surface (lone_surface.h) and through nothing but blobs and thin screens
+/// (FieldInstant::pull) is closed form, unless what that leaves out is above the tolerance. Else the integrals are
+/// Simpson's, of order 4 in the step; a step evaluates F no further apart than FieldInstant::longest_step, and twice as
+/// often where its error is above 1/kStepShare of the tolerance. A given settings.step is taken as it is. error_px is
+/// the integrals' alone. Nothing is known of what lies beside the straight ray.
 ///
 /// Ends, settings as in bent_ray.h; `at.p` is the redirected direction. A straight ray that comes to where n <= 0 ends
 /// there.

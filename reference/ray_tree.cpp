@@ -26,6 +26,7 @@ std::optional<Hit> RayTree::meet(const Branch& branch, const TraceSettings& trac
                                  bool& dark) const {
     p = branch.p;
     dark = false;
+    check_cancelled(cancelled_);
     if (!field_ || branch.inside >= 0) {
         const auto hit = geometry_.intersect(branch.origin, p, 0, kInfinity);
         length = branch.distance + (hit ? hit->t * glm::length(p) : 0.0);
@@ -33,7 +34,8 @@ std::optional<Hit> RayTree::meet(const Branch& branch, const TraceSettings& trac
     }
     TraceSettings settings = trace;
     settings.distance = branch.distance;
-    const BentHit end = reference::trace(*field_, &geometry_, branch.origin, glm::normalize(p), settings);
+    const BentHit end =
+        reference::trace(*field_, &geometry_, branch.origin, glm::normalize(p), settings, nullptr, watch(cancelled_));
     p = end.at.p;
     length = branch.distance + end.length;
     dark = end.end == BentHit::End::Trapped || end.end == BentHit::End::NoIndex;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "reference/bent_ray.h"
+#include "reference/cancel.h"
 #include "reference/shading.h"
 
 namespace eikonal::reference {
@@ -23,10 +24,12 @@ inline constexpr double kFaintest = 1e-3;
 class RayTree {
   public:
     /// field: null for straight rays. sunlight: null for straight sunlight.
-    RayTree(const Geometry& geometry, const Shading& shading, const FieldInstant* field, const Shadowgraph* sunlight)
-        : geometry_(geometry), shading_(shading), field_(field), sunlight_(sunlight) {}
+    RayTree(const Geometry& geometry, const Shading& shading, const FieldInstant* field, const Shadowgraph* sunlight,
+            Cancelled cancelled)
+        : geometry_(geometry), shading_(shading), field_(field), sunlight_(sunlight), cancelled_(cancelled) {}
 
     /// direction: of any length. trace: how its ray and all that follow are traced; of straight ones nothing is read.
+    /// FrameError: cancelled.
     dvec3 radiance(const dvec3& origin, const dvec3& direction, const TraceSettings& trace,
                    const LightSample& sample) const;
 
@@ -47,6 +50,7 @@ class RayTree {
     const Shading& shading_;
     const FieldInstant* field_;
     const Shadowgraph* sunlight_;
+    Cancelled cancelled_;
 };
 
 /// Part of unpolarised light that is reflected where it passes from index n1 to n2 at cosines cos1, cos2 to the normal

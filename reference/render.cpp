@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTileSize = 32;
+constexpr int kSightRays = 33;
 constexpr float kTrappedId = -1, kNoIndexId = -2;
 /// Of a straight ray through its own hit, by rounding [px].
 constexpr double kRoundingShift = 1e-7;
@@ -79,11 +80,26 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings)
     if (!settings.straight) air_.emplace(scene_, settings.rays);
 }
 
+/// Of an orthographic camera's straight rays, kSightRays² of them, the longest way to what they meet; at least the
+/// scene's far distance, where it sees its background [m].
+double Renderer::sight(const Camera& camera, const TraceSettings& trace, double far) const {
+    if (trace.perspective) return trace.far;
+    double longest = far;
+    for (int j = 0; j < kSightRays; ++j)
+        for (int i = 0; i < kSightRays; ++i) {
+            const CameraRay ray =
+                camera_ray(camera, (i + 0.5) / kSightRays * width_, (j + 0.5) / kSightRays * height_);
+            if (const auto hit = geometry_.intersect(ray.origin, glm::normalize(ray.direction), 0, trace.far))
+                longest = std::max(longest, hit->t);
+        }
+    return longest;
+}
+
 int Renderer::tile_count() const {
     return tiles_across(width_) * tiles_across(height_);
 }
 
-RenderedFrame Renderer::render(int frame, const std::function<void()>& tile_done) const {
+RenderedFrame Renderer::render_tiles(int frame, int every, const std::function<void()>& tile_done) const {
     const auto area = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     RenderedFrame result{width_,
                          height_,
@@ -103,10 +119,11 @@ RenderedFrame Renderer::render(int frame, const std::function<void()>& tile_done
             plane->resize(area);
         if (settings_.magnification) result.magnification.resize(area);
         air.emplace(Air{air_->at(frame), air_->trace_settings(camera), {}});
+        air->trace.sight = sight(camera, air->trace, air_->far());
         if (settings_.light_rays > 0 && scene_.light && settings_.colour)
-            air->sunlight.emplace(scene_, geometry_, air->field, air->trace, settings_.light_rays);
+            air->sunlight.emplace(scene_, geometry_, air->field, air->trace, settings_.light_rays, settings_.cancelled);
     }
-    tbb::parallel_for(0, tile_count(), [&](int index) {
+    tbb::parallel_for(0, tile_count(), every, [&](int index) {
         const int x0 = index % tiles_across(width_) * kTileSize, y0 = index / tiles_across(width_) * kTileSize;
         render_tile(camera, frame, {x0, y0, std::min(x0 + kTileSize, width_), std::min(y0 + kTileSize, height_)},
                     air ? &*air : nullptr, result);
@@ -141,7 +158,7 @@ dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air*
     const std::uint64_t pixel_bits = bits("pixel position"), sun_bits = bits("sun direction"),
                         sky_bits = bits("sky direction");
     const RayTree tree(geometry_, shading_, air ? &air->field : nullptr,
-                       air && air->sunlight ? &*air->sunlight : nullptr);
+                       air && air->sunlight ? &*air->sunlight : nullptr, settings_.cancelled);
     dvec3 sum(0);
     for (int k = 0; k < settings_.samples; ++k) {
         const auto sample = static_cast<std::uint32_t>(k);
@@ -154,6 +171,7 @@ dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air*
 }
 
 void Renderer::center_straight(const Camera& camera, int x, int y, std::size_t i, RenderedFrame& into) const {
+    check_cancelled(settings_.cancelled);
     const CameraRay ray = camera_ray(camera, x + 0.5, y + 0.5);
     const auto hit = geometry_.intersect(ray.origin, ray.direction, 0, kInfinity);
     into.depth[i] = static_cast<float>(hit ? hit->t : kInfinity);
@@ -168,7 +186,9 @@ void Renderer::center_bent(const Camera& camera, int x, int y, const Air& air, s
     Bundle bundle{};
     const Bundle pixels = pixel_bundle(camera, center.x, center.y);
     if (bundled) bundle = pixels;
-    const BentHit end = trace(air.field, &geometry_, ray.origin, direction, air.trace, bundled ? &bundle : nullptr);
+    check_cancelled(settings_.cancelled);
+    const BentHit end = trace(air.field, &geometry_, ray.origin, direction, air.trace, bundled ? &bundle : nullptr,
+                              watch(settings_.cancelled));
     into.steps[i] = static_cast<float>(end.steps);
     into.error[i] = static_cast<float>(end.error_px);
     into.depth[i] = into.length[i] = static_cast<float>(kInfinity);

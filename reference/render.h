@@ -18,11 +18,12 @@
 /// Not finite radiance never leaves: it is limited to 0 … the largest half.
 ///
 /// Failures: UserError for the scene (geometry.h, shading.h, camera.h, noise/field.h), FrameError when a frame cannot
-/// be rendered.
+/// be rendered or is given up (cancel.h).
 #pragma once
 
 #include <functional>
 
+#include "reference/cancel.h"
 #include "reference/ray_tree.h"
 #include "reference/scene_air.h"
 #include "reference/shadowgraph.h"
@@ -37,6 +38,7 @@ struct RenderSettings {
     bool magnification = false;
     int light_rays = 0;  ///< across a side of each quad, for the shadowgraph (shadowgraph.h); 0: straight sunlight
     bool colour = true;  ///< false: only what belongs to pixels' centres
+    Cancelled cancelled = nullptr;
 };
 
 /// Planes of width * height pixels. Those of bent rays are empty for straight ones.
@@ -58,8 +60,17 @@ class Renderer {
     Renderer(const Scene& scene, const RenderSettings& settings);
 
     /// tile_done, if given, is called after each of tile_count() tiles, from any thread.
-    RenderedFrame render(int frame, const std::function<void()>& tile_done = {}) const;
+    RenderedFrame render(int frame, const std::function<void()>& tile_done = {}) const {
+        return render_tiles(frame, 1, tile_done);
+    }
     int tile_count() const;
+    /// Every so many tiles of a frame, counted in rows, only; the rest of its planes is zero. What render() will be like.
+    RenderedFrame probe(int frame, int every) const { return render_tiles(frame, every, {}); }
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    /// What becomes of each medium; nothing for straight rays.
+    std::vector<std::string> notes() const { return air_ ? air_->notes() : std::vector<std::string>{}; }
 
     /// Object index of a sphere that the camera is inside of: the picture shows it from within.
     std::optional<int> camera_inside(int frame) const { return geometry_.sphere_around(camera(frame).position); }
@@ -70,6 +81,8 @@ class Renderer {
         int x0, y0, x1, y1;
     };
     struct Air;
+    RenderedFrame render_tiles(int frame, int every, const std::function<void()>& tile_done) const;
+    double sight(const Camera& camera, const TraceSettings& trace, double far) const;
     void render_tile(const Camera& camera, int frame, const Tile& tile, const Air* air, RenderedFrame& into) const;
     dvec3 colour(const Camera& camera, int frame, int x, int y, const Air* air) const;
     void center_straight(const Camera& camera, int x, int y, std::size_t i, RenderedFrame& into) const;

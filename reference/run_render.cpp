@@ -1,5 +1,6 @@
 /// `eikonal-trace render`: frames of a scene, with straight or bent rays.
 #include <fmt/format.h>
+#include <tbb/info.h>
 
 #include <chrono>
 #include <cstdio>
@@ -7,6 +8,7 @@
 
 #include "noise/error.h"
 #include "reference/commands.h"
+#include "reference/explain.h"
 #include "reference/frame_file.h"
 #include "reference/tile_progress.h"
 #include "warp/image/atomic_file.h"
@@ -52,7 +54,13 @@ int run(const RenderOptions& o) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
     const std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
     const FilePattern pattern = checked_pattern(o, frames.size());
-    const Renderer renderer(scene, o.render);
+    RenderSettings settings = o.render;
+    settings.cancelled = interrupted;
+    const Renderer renderer(scene, settings);
+    if (o.explain) {
+        explain(renderer, scene, settings, frames, o.common.threads > 0 ? o.common.threads : tbb::info::default_concurrency());
+        return 0;
+    }
     for (const int frame : frames) {
         const std::filesystem::path file = pattern.at(frame);
         std::error_code ignored;

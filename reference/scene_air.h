@@ -24,9 +24,13 @@ class SceneAir {
     SceneAir(const Scene& scene, const RaySettings& settings);
 
     FieldInstant at(int frame) const { return field_.at(time(frame)); }
+    /// What each medium has been made into (Field::notes).
+    const std::vector<std::string>& notes() const { return field_.notes(); }
     /// Seconds since the scene's first frame.
     double time(int frame) const;
     TraceSettings trace_settings(const Camera& camera) const;
+    /// The scene's far distance, where the warp sees its background [m].
+    double far() const { return far_; }
 
     const CameraPath& path() const { return path_; }
     int width() const { return width_; }

@@ -34,7 +34,7 @@ struct Landing {
 }  // namespace
 
 Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const FieldInstant& field,
-                         const TraceSettings& camera_trace, int light_rays) {
+                         const TraceSettings& camera_trace, int light_rays, Cancelled cancelled) {
     const dvec3 light = glm::normalize(scene.light.value().direction);
     const int side = std::max(2, light_rays / kRaysPerTexel);
     for (std::size_t index = 0; index < scene.objects.size(); ++index) {
@@ -68,7 +68,9 @@ Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const Fie
             for (std::size_t i = 0; i < columns; ++i) {
                 const double a = (static_cast<double>(i) + 0.5 - 0.5 * static_cast<double>(columns)) * spacing[0];
                 const dvec3 aim = quad.origin + a * right + b * up;
-                const BentHit end = reference::trace(field, &geometry, aim - back * light, light, trace);
+                check_cancelled(cancelled);
+                const BentHit end =
+                    reference::trace(field, &geometry, aim - back * light, light, trace, nullptr, watch(cancelled));
                 if (end.hit && end.surface.object == static_cast<int>(index))
                     landings[j * columns + i] = {true, end.surface.uv};
             }

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "reference/bent_ray.h"
+#include "reference/cancel.h"
 #include "warp/scene/scene.h"
 
 namespace eikonal::reference {
@@ -22,9 +23,9 @@ inline constexpr int kMostLightRays = 8192;
 /// Immutable, thread-safe. The same for any number of threads.
 class Shadowgraph {
   public:
-    /// light_rays: 2 kRaysPerTexel … kMostLightRays. scene.light must be set.
+    /// light_rays: 2 kRaysPerTexel … kMostLightRays. scene.light must be set. FrameError: cancelled.
     Shadowgraph(const Scene& scene, const Geometry& geometry, const FieldInstant& field, const TraceSettings& trace,
-                int light_rays);
+                int light_rays, Cancelled cancelled = nullptr);
 
     /// Irradiance over that of the unobstructed sun at a hit: nothing for objects that have no map.
     std::optional<double> irradiance(const Hit& hit) const;

@@ -26,11 +26,10 @@ double SurfaceSearch::room(double curvature) const {
     return b > 0 ? -2 * c / (b + root) : (root - b) / (2 * curvature);
 }
 
-std::optional<SurfaceSearch::Met> SurfaceSearch::add(const Step& step, double kink) {
+std::optional<SurfaceSearch::Met> SurfaceSearch::add(const Step& step, double length, double kink) {
     if (!geometry_) return {};
     pieces_[static_cast<std::size_t>(count_++)] = step;
-    const double length = step.length(), bend = step.bend();
-    const double curvature = length > 0 ? bend / length : 0;
+    const double bend = step.bend(), curvature = length > 0 ? bend / length : 0;
     double done = 0;
     if (chord_length_ > 0) chord_bend_ += kink;
     while (true) {
@@ -83,19 +82,21 @@ std::optional<SurfaceSearch::Met> SurfaceSearch::test(double from, double until,
     const dvec3 d = (b - a) / length;
     const auto hit = geometry_->intersect(a - back * d, d, 0, back + length + slack);
     if (!hit) return {};
-    if (auto met = refine(from, until, back, *hit)) return met;
-    if (depth == kMostHalvings) {
-        const double place = from + std::clamp((hit->t - back) / length, 0.0, 1.0) * (until - from);
-        const int index = piece_of(place);
-        return Met{*hit, pieces_[static_cast<std::size_t>(index)], place - index};
-    }
+    const double guess = from + std::clamp((hit->t - back) / length, 0.0, 1.0) * (until - from);
+    const int index = piece_of(guess);
+    const Step& piece = pieces_[static_cast<std::size_t>(index)];
+    // A straight piece is its own chord.
+    if ((piece.straight && from >= index && until <= index + 1) || depth == kMostHalvings)
+        return Met{*hit, piece, guess - index};
+    if (auto met = refine(from, until, guess, back, *hit)) return met;
     const double middle = 0.5 * (from + until);
     if (auto met = test(from, middle, travelled, depth + 1)) return met;
     return test(middle, until, travelled + 0.5 * length, depth + 1);
 }
 
-/// Place on the curve where it passes through the tangent plane at `hit` (Illinois' form of regula falsi).
-double SurfaceSearch::plane_root(double from, double until, const Hit& hit) const {
+/// Place on the curve where it passes through the tangent plane at `hit`: from `guess` on by Newton's method, else by
+/// Illinois' form of regula falsi.
+double SurfaceSearch::plane_root(double from, double until, double guess, const Hit& hit) const {
     int piece = -1;
     double start = 0;
     std::array<double, 5> along{};
@@ -111,12 +112,18 @@ double SurfaceSearch::plane_root(double from, double until, const Hit& hit) cons
     };
     double a = from, b = until, ga = height(a), gb = height(b);
     if ((ga > 0) == (gb > 0)) return std::abs(ga) < std::abs(gb) ? a : b;
+    const double rounding = 1e-15 * (std::abs(ga) + std::abs(gb));
+    for (int i = 0; i < 4 && guess >= from && guess <= until; ++i) {
+        const double g = height(guess), t = guess - piece;
+        if (std::abs(g) <= rounding) return guess;
+        guess -= g / (along[0] + t * (2 * along[1] + t * (3 * along[2] + t * (4 * along[3] + t * 5 * along[4]))));
+    }
     int side = 0;
     for (int i = 0; i < 100; ++i) {
         const double c = (a * gb - b * ga) / (gb - ga);
         if (!(c > a && c < b)) break;
         const double gc = height(c);
-        if (gc == 0) return c;
+        if (std::abs(gc) <= rounding) return c;
         if ((gc > 0) == (ga > 0)) {
             a = c, ga = gc;
             if (side == -1) gb *= 0.5;
@@ -132,13 +139,14 @@ double SurfaceSearch::plane_root(double from, double until, const Hit& hit) cons
 }
 
 /// back: how far the surface may lie before the chord.
-std::optional<SurfaceSearch::Met> SurfaceSearch::refine(double from, double until, double back,
+std::optional<SurfaceSearch::Met> SurfaceSearch::refine(double from, double until, double guess, double back,
                                                         const Hit& chord_hit) const {
     const dvec3 start = position(from);
     Hit hit = chord_hit;
     double reach = 0;
     for (int i = 0; i < 6; ++i) {
-        const double place = plane_root(from, until, hit);
+        const double place = plane_root(from, until, guess, hit);
+        guess = place;
         const int index = piece_of(place);
         const Step& step = pieces_[static_cast<std::size_t>(index)];
         const dvec3 x = step.position(place - index), d = glm::normalize(step.direction(place - index));

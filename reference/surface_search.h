@@ -42,8 +42,9 @@ class SurfaceSearch {
     SurfaceSearch(const Geometry* geometry, const Deviation& deviation, double distance)
         : geometry_(geometry), deviation_(deviation), start_(distance), distance_(distance) {}
 
-    /// Steps follow each other without gaps; `kink` is how far the direction jumps at the start of this one [rad].
-    std::optional<Met> add(const Step& step, double kink = 0);
+    /// Steps follow each other without gaps; length: step.length(); `kink` is how far the direction jumps at the start
+    /// of this one [rad].
+    std::optional<Met> add(const Step& step, double length, double kink = 0);
     /// Tests what is left. Call it at the end of the ray.
     std::optional<Met> finish();
 
@@ -54,10 +55,10 @@ class SurfaceSearch {
     double room(double curvature) const;
     std::optional<Met> close(double until);
     std::optional<Met> test(double from, double until, double travelled, int depth) const;
-    std::optional<Met> refine(double from, double until, double back, const Hit& chord_hit) const;
+    std::optional<Met> refine(double from, double until, double guess, double back, const Hit& chord_hit) const;
     int piece_of(double place) const;
     dvec3 position(double place) const;
-    double plane_root(double from, double until, const Hit& hit) const;
+    double plane_root(double from, double until, double guess, const Hit& hit) const;
 
     const Geometry* geometry_;
     Deviation deviation_;

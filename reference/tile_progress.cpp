@@ -6,9 +6,6 @@
 
 #include <cstdio>
 
-#include "noise/error.h"
-#include "warp/image/interrupt.h"
-
 namespace eikonal::reference {
 
 TileProgress::TileProgress(std::string what, int tiles)
@@ -19,7 +16,6 @@ TileProgress::~TileProgress() {
 }
 
 void TileProgress::tile_done() {
-    if (interrupted()) throw FrameError("interrupted; the same command goes on");
     const std::scoped_lock lock(mutex_);
     ++done_;
     const auto now = Clock::now();

@@ -15,7 +15,7 @@ class TileProgress {
     TileProgress(const TileProgress&) = delete;
     TileProgress& operator=(const TileProgress&) = delete;
 
-    /// One more tile is done. Thread-safe. FrameError: the user has interrupted the run.
+    /// One more tile is done. Thread-safe.
     void tile_done();
 
   private:

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <fstream>
 #include <sstream>
 #include <thread>
 
@@ -160,6 +161,28 @@ TEST_F(Trace, SameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(bytes("1.exr"), bytes("5.exr"));
 }
 
+// Where the path has a key, the frame is that of a camera which stands there.
+TEST_F(Trace, AMovingCameraIsAStillOneInEachFrame) {
+    const auto scene = [&](const std::string& name, const std::string& camera) {
+        write_text(name, "[camera]\nresolution = [32, 24]\n" + camera + "\n" + kBlob +
+                             "[[object]]\nshape = \"plane\"\norigin = [0, 0, -20]\nnormal = [0.2, 0, 1]\n");
+    };
+    const std::string last = "49 1 0.5 0.25 10 20 30\n";
+    write_text("moves.chan", "1 0 1 2 0 0 0\n25 0.5 0 -1 0 0 0\n" + last);
+    write_text("last.chan", last);
+    scene("moves.toml", "path = \"moves.chan\"");
+    EXPECT_EQ(render({"moves.toml", "-o", "m.####.exr", "--frames", "1-49x24", "--samples", "4"}).status, 0);
+    const std::pair<std::string, std::string> still[] = {{"0001", "position = [0, 1, 2]\nlook_at = [0, 1, 1]"},
+                                                         {"0025", "position = [0.5, 0, -1]\nlook_at = [0.5, 0, -3]"},
+                                                         {"0049", "path = \"last.chan\""}};
+    for (const auto& [frame, camera] : still) {
+        scene("still.toml", camera);
+        EXPECT_EQ(render({"still.toml", "-o", frame + ".exr", "--frames", frame, "--samples", "4"}).status, 0);
+        EXPECT_EQ(bytes("m." + frame + ".exr"), bytes(frame + ".exr")) << frame;
+    }
+    EXPECT_NE(bytes("0001.exr"), bytes("0025.exr"));
+}
+
 TEST_F(Trace, OutputThatCannotBeWrittenFailsTheFrame) {
     wall(kBlob);
     refuses(render({"scene.toml", "-o", "none/a.exr"}), 1, {"none", "frame 1"});
@@ -168,15 +191,39 @@ TEST_F(Trace, OutputThatCannotBeWrittenFailsTheFrame) {
             1, {"none"});
 }
 
+/// Whether a process has taken SIGINT into its own hands.
+bool catches_interrupts(pid_t process) {
+    std::ifstream status("/proc/" + std::to_string(process) + "/status");
+    const std::string key = "SigCgt:";
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with(key)) return (std::stoull(line.substr(key.size()), nullptr, 16) >> (SIGINT - 1)) & 1;
+    return false;
+}
+
 TEST_F(Trace, AnInterruptLeavesNothingUnfinished) {
     wall(kBlob);
-    const pid_t process = start_tool({EIKONAL_TRACE_PROGRAM, "render", "scene.toml", "-o", "a.exr", "--samples", "256",
-                                      "--set", "camera.resolution=[640,480]"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    ::kill(process, SIGINT);
-    const Ended ended = finish(process);
-    EXPECT_GT(ended.status, 0) << "not killed by the signal itself";
-    EXPECT_EQ(names(), Words{"scene.toml"});
+    const auto interrupt = [&](Words words) {
+        words.insert(words.begin(), {EIKONAL_TRACE_PROGRAM, "render", "scene.toml", "-o", "a.exr"});
+        const pid_t process = start_tool(words);
+        for (int i = 0; i < 2000 && !catches_interrupts(process); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        std::this_thread::sleep_for(std::chrono::milliseconds(700));  // until rays are under way
+        ::kill(process, SIGINT);
+        const auto signalled = std::chrono::steady_clock::now();
+        const Ended ended = finish(process);
+        const std::chrono::duration<double> went_on = std::chrono::steady_clock::now() - signalled;
+        EXPECT_EQ(ended.status, 1) << "not killed by the signal itself";
+        EXPECT_EQ(ended.lines().back(), "eikonal-trace: frame 1: interrupted; the same command goes on");
+        EXPECT_LT(went_on.count(), 3);
+        EXPECT_EQ(names(), Words{"scene.toml"});
+    };
+    interrupt({"--samples", "256", "--set", "camera.resolution=[640,480]"});
+    // Rays that go round for ever: within the first.
+    wall("[[medium]]\ntype = \"profile\"\nprofile = \"fish-eye\"\nradius = 0.01\n");
+    interrupt({"--samples", "1", "--step-budget", "1000000000", "--tolerance", "1e-6"});
+    // The sun's rays, before the first tile.
+    wall(kBlob + "[light]\n");
+    interrupt({"--samples", "1", "--light-rays", "2048", "--tolerance", "1e-9"});
 }
 
 // n² = 1 + z (PHYSICS 8): started along x where z = 0, x = u and z = u²/4.

@@ -1,4 +1,5 @@
 /// The straight-ray renderer: depth against closed forms, pixels against the camera, determinism, and bad input.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -343,7 +344,6 @@ TEST_F(ReferenceTest, BadScenesNameWhatIsWrong) {
     expect_user_error([&] { render_mesh(folder_); }, {"cannot read"});
     expect_user_error([&] { render_mesh(write("empty.obj", "")); }, {"empty.obj", "no triangle"});
     expect_user_error([&] { render_mesh(write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")); }, {"index.obj"});
-    expect_user_error([&] { render_mesh(write("nan.obj", "v 0 0 1e999\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")); }, {"nan.obj"});
     expect_user_error([&] { render_mesh(write("lib.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")); },
                       {"lib.obj", "gone.mtl"});
     ObjectSpec plane;
@@ -354,6 +354,71 @@ TEST_F(ReferenceTest, BadScenesNameWhatIsWrong) {
     Scene sky = scene_with({ObjectSpec{}});
     sky.background.image = folder_ / "gone.exr";
     expect_user_error([&] { Renderer(sky, straight(1)); }, {"[background]", "gone.exr"});
+}
+
+// What the library that reads meshes would take for 0.
+TEST_F(ReferenceTest, NumbersOfAMeshThatAreNoneNameTheirLine) {
+    const std::string good = "v 0 0 0\n v +1 0 0 # a corner\nv 0 1e0 0 1 0.5 .25\nvt 0 1\nvn 0 0 1\nf 1 2 3\n";
+    EXPECT_EQ(read_mesh(write("good.obj", good), 1, dvec3(0)).triangles.size(), 1u);
+    for (const std::string value : {"nan", "NaN", "inf", "-inf", "1e999", "1e13", "-", "1.5x", "x"}) {
+        for (const char* line : {"v 0 @ 0", "v 0 0 0 1 @ 1", "vn 0 0 @", "vt @ 0", "\tv\t@ 0 0\r"}) {
+            std::string text = line;
+            text.replace(text.find('@'), 1, value);
+            expect_user_error([&] { read_mesh(write("bad.obj", good + text + "\n"), 1, dvec3(0)); },
+                              {"bad.obj:7: v", "'" + value + "'"});
+        }
+        for (const std::string key : {"Kd", "Ke"}) {
+            write("bad.mtl", "newmtl a\n" + key + " 0 " + value + " 0\n");
+            expect_user_error([&] { read_mesh(write("m.obj", "mtllib bad.mtl\n" + good), 1, dvec3(0)); },
+                              {"bad.mtl:2: " + key, "'" + value + "'"});
+        }
+    }
+    expect_user_error([&] { read_mesh(write("short.obj", good + "v 1 2\n"), 1, dvec3(0)); },
+                      {"short.obj:7: v needs 3 numbers and has 2"});
+}
+
+// A slab of thickness t, met at the angle θ, shifts a ray sideways by t sin θ (1 - cos θ/√(n² - sin² θ)) and leaves its
+// direction. Seen through it, the edge between two screens has moved by that much, wherever the screens stand.
+TEST_F(ReferenceTest, AGlassSlabShiftsARaySideways) {
+    constexpr double t = 0.3, n = 1.5;
+    constexpr double kOff = 4e-5;  // Geometry::leave starts 13 µm off each surface
+    for (const double theta : {0.0, 0.3, 0.8, 1.2}) {
+        std::string box;
+        for (int corner = 0; corner < 8; ++corner) {
+            const double a = (corner & 1 ? 0.5 : -0.5) * t, b = corner & 2 ? 4 : -4, c = corner & 4 ? 4 : -4;
+            box += fmt::format("v {} {} {}\n", a * std::sin(theta) + b * std::cos(theta), c,
+                               a * std::cos(theta) - b * std::sin(theta));
+        }
+        box += "f 1 3 7 5\nf 2 4 8 6\nf 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\n";
+        ObjectSpec slab;
+        slab.shape = ObjectShape::Mesh;
+        slab.file = write("slab.obj", box);
+        slab.refractive_index = n;
+        const double sine = std::sin(theta), cosine = std::cos(theta);
+        const double shift = t * sine * (1 - cosine / std::sqrt(n * n - sine * sine));
+        for (const double behind : {7.0, 30.0})
+            for (const double off : {-kOff, kOff}) {
+                // The slab leans so that rays along -z are shifted to -x. The edge stands beside where they arrive.
+                ObjectSpec left, right;
+                for (ObjectSpec* screen : {&left, &right}) {
+                    screen->shape = ObjectShape::Quad;
+                    screen->normal = {0, 0, 1};
+                    screen->size = {100, 100};
+                }
+                left.origin = {-shift + off - 50, 0, -behind};
+                right.origin = {-shift + off + 50, 0, -behind};
+                left.color = {0, 1, 0};
+                right.color = {0, 0, 1};
+                Scene scene = scene_with({slab, left, right});
+                scene.camera.projection = Projection::Orthographic;
+                scene.camera.width = 1e-7;
+                scene.camera.position = {0, 0, 5};
+                scene.camera.look_at = {0, 0, 0};
+                const RenderedFrame frame = Renderer(scene, straight(1)).render(1);
+                EXPECT_EQ(frame.color[2] > frame.color[1], off < 0) << theta << ' ' << behind;
+                EXPECT_GT(frame.color[1] + frame.color[2], 0.5);
+            }
+    }
 }
 
 TEST_F(ReferenceTest, AnglesMatchTheLibrary) {

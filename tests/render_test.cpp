@@ -2,11 +2,15 @@
 /// of rays that have no end, and the same bytes whatever the threads.
 #include "reference/render.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <numeric>
@@ -353,6 +357,37 @@ TEST(Render, TheAirMovesOnAndTheCameraToo) {
     const RenderedFrame first = renderer.render(100);
     EXPECT_FALSE(same(first.v, renderer.render(112).v));
     EXPECT_TRUE(same(first, renderer.render(100)));
+}
+
+// The air is bent light's own; u and v lead from each frame's camera to where its own straight rays see the same.
+TEST(Render, AMovingCameraMeasuresAgainstItsOwnStraightRays) {
+    ObjectSpec wall = quad({0, 0, -9}, {0.3, 0.2, 1}, 200);  // oblique: depth tells the place
+    Scene scene = scene_with({wall});
+    const auto path = std::filesystem::path(testing::TempDir()) / fmt::format("eikonal_render_{}.chan", ::getpid());
+    std::ofstream(path) << "1 0 1.5 0 0 0 0\n9 2 1 1 10 -15 20\n";
+    scene.camera.path = path;
+    BlobsSpec blobs;
+    for (int i = 0; i < 60; ++i) blobs.blobs.push_back({{0.5 * (i % 10) - 1.5, 0.5 * (i / 10) + 0.5, -4}, 0.3, 1500});
+    scene.media = {blobs};
+    scene.optics.exaggeration = 50;
+    const Renderer renderer(scene, settings());
+    const Geometry geometry(scene, {0, 1.5, 0});
+    std::filesystem::remove(path);
+    for (const int frame : {1, 4, 9}) {
+        const RenderedFrame bent = renderer.render(frame);
+        double furthest = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const std::size_t i = at(x, y);
+                const double u = bent.u[i], v = bent.v[i];
+                furthest = std::max(furthest, std::hypot(u, v));
+                const CameraRay ray = camera_ray(renderer.camera(frame), x + 0.5 + u, y + 0.5 + v);
+                const auto seen = geometry.intersect(ray.origin, ray.direction, 0, 1e3);
+                ASSERT_TRUE(seen);
+                EXPECT_NEAR(bent.depth[i] / seen->t, 1, 3e-7) << frame;
+            }
+        EXPECT_GT(furthest, 0.5) << frame;
+    }
 }
 
 /// A wall of 2 m at z = -5, lit along -z by a sun that comes from behind the camera.

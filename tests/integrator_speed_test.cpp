@@ -1,0 +1,132 @@
+/// What makes the tracer quick must not cost accuracy: long strides between blobs and through lattices against the
+/// finest tolerance, and first order's closed form against its integral.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "reference/bent_ray.h"
+
+namespace eikonal::reference {
+namespace {
+
+/// Media at t = 0 before a wall 100 m away, seen through a long lens.
+struct Shot {
+    Field field;
+    FieldInstant now;
+    Geometry wall;
+    TraceSettings settings;
+
+    explicit Shot(const std::vector<MediumSpec>& media)
+        : field(media, {}, {}, std::uint64_t{1} << 30), now(field.at(0)), wall(scene(), dvec3(0)) {
+        settings.pixel = 7e-5;
+    }
+
+    static Scene scene() {
+        ObjectSpec plane;
+        plane.origin = {0, 0, -100};
+        plane.normal = {0, 0, 1};
+        Scene scene;
+        scene.objects = {plane};
+        return scene;
+    }
+    static dvec3 direction(int i) {
+        return glm::normalize(dvec3(0.02 * std::cos(2.4 * i), 0.02 * std::sin(2.4 * i), -1));
+    }
+    BentHit trace_one(int i) const { return trace(now, &wall, dvec3(0), direction(i), settings); }
+    /// Worst distance between two ways of tracing the same rays [px].
+    double off(const TraceSettings& one, const TraceSettings& other) {
+        double worst = 0;
+        for (int i = 0; i < 40; ++i) {
+            settings = one;
+            const BentHit a = trace_one(i);
+            settings = other;
+            const BentHit b = trace_one(i);
+            EXPECT_TRUE(a.hit && b.hit);
+            worst = std::max(worst, glm::length(a.at.x - b.at.x) / 100 / one.pixel);
+        }
+        return worst;
+    }
+};
+
+/// 200 blobs of 10 to 20 cm along the way.
+BlobsSpec crowd(double temperature) {
+    BlobsSpec spec;
+    for (int i = 0; i < 200; ++i) {
+        const auto spread = [i](double step) { return i * step - static_cast<int>(i * step); };
+        spec.blobs.push_back({{4 * spread(0.618034) - 2, 3 * spread(0.754878) - 1.5, -5 - 90 * spread(0.569840)},
+                              0.1 + 0.1 * spread(0.414214),
+                              temperature});
+    }
+    return spec;
+}
+
+TEST(Strides, KeepTheToleranceAmongBlobs) {
+    for (const double temperature : {310.0, 600.0, 1500.0}) {
+        Shot shot({crowd(temperature)});
+        TraceSettings finest = shot.settings;
+        finest.tolerance_px = 1e-6;
+        for (const double tolerance : {0.1, 0.01, 1e-4}) {
+            TraceSettings usual = shot.settings;
+            usual.tolerance_px = tolerance;
+            EXPECT_LE(shot.off(usual, finest), tolerance) << temperature;
+        }
+    }
+}
+
+TEST(Strides, KeepTheToleranceInALattice) {
+    TurbulenceSpec spec;
+    spec.form = TurbulenceForm::Lattice;
+    spec.lattice = {{32, 32, 32, 1}};
+    spec.period = {{8, 8, 8, 1}};
+    spec.alpha = 0;
+    spec.inner_scale = 0.5;
+    spec.outer_scale = 4;
+    spec.cn2 = 1e-11;
+    Shot shot({spec});
+    TraceSettings finest = shot.settings;
+    finest.tolerance_px = 1e-6;
+    for (const double tolerance : {0.1, 0.01, 1e-3}) {
+        TraceSettings usual = shot.settings;
+        usual.tolerance_px = tolerance;
+        EXPECT_LE(shot.off(usual, finest), tolerance);
+    }
+}
+
+TEST(Strides, AreLongButPassNoBlobOver) {
+    // One small blob far away, off the ray by all that still matters.
+    const double sigma = 0.01;
+    for (const double b : {0.0, 0.7, 1.5, 2.0, 2.5, 3.0, 3.5}) {
+        BlobsSpec spec;
+        spec.blobs = {{{b * sigma, 0, -60}, sigma, 1000}};
+        Shot shot({spec});
+        TraceSettings finest = shot.settings, usual = shot.settings;
+        finest.step = 0.1 * sigma;
+        finest.integrator = Integrator::Rk4;
+        const BentHit hit = trace(shot.now, &shot.wall, dvec3(0), {0, 0, -1}, usual);
+        const BentHit truth = trace(shot.now, &shot.wall, dvec3(0), {0, 0, -1}, finest);
+        ASSERT_TRUE(hit.hit && truth.hit);
+        EXPECT_LE(glm::length(hit.at.x - truth.at.x) / 100 / usual.pixel, usual.tolerance_px) << b;
+        EXPECT_LE(hit.steps, 60);
+    }
+}
+
+TEST(ClosedForm, OfBlobsIsFirstOrdersIntegral) {
+    Shot shot({crowd(600)});
+    TraceSettings closed = shot.settings, integral = shot.settings;
+    closed.integrator = integral.integrator = Integrator::FirstOrder;
+    integral.step = 0.01;
+    EXPECT_LE(shot.off(closed, integral), closed.tolerance_px);
+    shot.settings = closed;
+    EXPECT_EQ(shot.trace_one(0).steps, 1);
+    // Exactly: what is left out goes with the tolerance.
+    closed.tolerance_px = 1e-3;
+    EXPECT_LE(shot.off(closed, integral), closed.tolerance_px);
+    // What first order cannot leave out is integrated.
+    closed.tolerance_px = 1e-6;
+    shot.settings = closed;
+    EXPECT_GT(shot.trace_one(0).steps, 1);
+}
+
+}  // namespace
+}  // namespace eikonal::reference
