@@ -1,17 +1,15 @@
 #include "warp/displace/displacer.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "noise/error.h"
 #include "noise/lattice.h"
 #include "noise/path_tables.h"
+#include "tests/displacement_scenes.h"
 #include "tests/trigonometric_sum.h"
 #include "warp/displace/first_order.h"
 #include "warp/displace/lattice_tables.h"
@@ -20,74 +18,7 @@
 namespace eikonal {
 namespace {
 
-using Map = std::vector<float>;
-
-Map map_of(const Displacer& displacer, double frame, const PixelWindow& window, double D, double gain = 1) {
-    Map uv(2 * window.area());
-    displacer.at(frame, D, D, gain).map(window, D, DepthMeeting::Own, uv.data());
-    return uv;
-}
-
-Map map_of(const Displacer& displacer, double frame, const PixelWindow& window, const DepthPlane& plane,
-           DepthMeeting how) {
-    Map uv(2 * window.area());
-    displacer.at(frame, plane.nearest(), plane.farthest()).map(window, &plane, how, uv.data());
-    return uv;
-}
-
-double rms(const Map& uv) {
-    double sum = 0;
-    for (const float v : uv) sum += double{v} * v;
-    return std::sqrt(2 * sum / static_cast<double>(uv.size()));
-}
-
-double difference(const Map& a, const Map& b) {
-    Map d(a);
-    for (std::size_t i = 0; i < d.size(); ++i) d[i] -= b[i];
-    return rms(d);
-}
-
 // ---- lattices ----
-
-TurbulenceSpec lattice_spec() {
-    TurbulenceSpec spec;
-    spec.form = TurbulenceForm::Lattice;
-    spec.cn2 = 1e-11;
-    spec.outer_scale = 1;
-    spec.inner_scale = 0.5;
-    spec.lattice = {{16, 16, 16, 1}};
-    spec.period = {{2.0, 2.0, 2.0, 1.0}};
-    spec.alpha = 0;
-    return spec;
-}
-
-Scene scene_with(const TurbulenceSpec& spec) {
-    Scene scene;
-    scene.media = {spec};
-    scene.camera.position = {0.13, 0.21, -0.07};
-    scene.camera.look_at = scene.camera.position + dvec3(0, 0, -1);
-    return scene;
-}
-
-Scene orthographic(const TurbulenceSpec& spec, const dvec3& forward, const dvec3& up) {
-    Scene scene = scene_with(spec);
-    scene.camera.projection = Projection::Orthographic;
-    scene.camera.width = 1.7;
-    scene.camera.look_at = scene.camera.position + forward;
-    scene.camera.up = up;
-    return scene;
-}
-
-DisplacerSettings small(double far, std::optional<Model> model = {}) {
-    DisplacerSettings s;
-    s.negligible = 0;  // scenes of any strength
-    s.width = 24;
-    s.height = 18;
-    s.far = far;
-    s.model = model;
-    return s;
-}
-constexpr PixelWindow kSmall{0, 0, 24, 18};
 
 /// Eq. 7 by direct quadrature along the trigonometric sum: d of the ray of pixel (x, y) for an object at depth D.
 dvec2 quadrature(const TrigonometricSum& field, const Camera& camera, int x, int y, double D) {
@@ -120,7 +51,8 @@ TrigonometricSum trigonometric(const TurbulenceSpec& spec) {
 
 // Pixels lie between lattice nodes; a step of 1/60 of the path leaves Gauss' rule below 1e-6.
 TEST(Displacement, SpectralIsTheQuadratureOfItsLattice) {
-    const TurbulenceSpec spec = lattice_spec();
+    TurbulenceSpec spec = lattice_spec();
+    spec.lattice = {{12, 12, 12, 1}};  // term by term, at each of 46080 points
     const TrigonometricSum field = trigonometric(spec);
     const double s = std::sqrt(0.5);
     const std::pair<dvec3, dvec3> views[] = {{{0, 0, -1}, {0, 1, 0}}, {{0, 0, 1}, {s, s, 0}},
@@ -133,7 +65,7 @@ TEST(Displacement, SpectralIsTheQuadratureOfItsLattice) {
         for (const double D : {0.05, 0.8, 1.9}) {
             const Map map = map_of(displacer, 1, kSmall, D);
             Difference d;
-            for (int i = 0; i < 40; ++i) {
+            for (int i = 0; i < 16; ++i) {
                 const int x = i * 7 % 24, y = i * 5 % 18;
                 d.add(quadrature(field, camera, x, y, D), &map[2 * static_cast<std::size_t>(y * 24 + x)]);
             }
@@ -146,7 +78,7 @@ TEST(Displacement, SpectralIsTheQuadratureOfItsLattice) {
         const DepthPlane plane(kSmall, metres);
         const Map map = map_of(displacer, 1, kSmall, plane, DepthMeeting::Own);
         Difference d;
-        for (int i = 0; i < 40; ++i) {
+        for (int i = 0; i < 16; ++i) {
             const int x = i * 7 % 24, y = i * 5 % 18;
             d.add(quadrature(field, camera, x, y, plane.at(x, y)), &map[2 * static_cast<std::size_t>(y * 24 + x)]);
         }
@@ -185,13 +117,13 @@ TEST(Displacement, FirstOrderAgreesWithSpectral) {
     EXPECT_LT(difference(a, b), kFirstOrderError * rms(a));
 }
 
-// Power up to Nyquist. An odd lattice has no Nyquist mode, whose slope is the one thing that the two do not share.
+// Power up to Nyquist: an even lattice's Nyquist modes bend light in neither.
 TEST(Displacement, FirstOrderAgreesWithSpectralOnThePapersSpectrum) {
     TurbulenceSpec spec = lattice_spec();
     spec.spectrum = SpectrumKind::Paper;
     spec.strength = 6e-6;
     spec.period = {{20.0, 20.0, 20.0, 8.0}};
-    for (const auto& [size, error] : {std::pair{31, kFirstOrderError}, std::pair{32, kNyquistSlopes}}) {
+    for (const int size : {31, 32}) {
         spec.lattice = {{size, size, size, 1}};
         Scene scene = orthographic(spec, {0, 0, -1}, {0, 1, 0});
         scene.camera.width = 16;
@@ -203,7 +135,7 @@ TEST(Displacement, FirstOrderAgreesWithSpectralOnThePapersSpectrum) {
         const Displacer first(scene, settings);
         const PixelWindow window{0, 0, 320, 240};
         const Map a = map_of(spectral, 1, window, 10), b = map_of(first, 1, window, 10);
-        EXPECT_LT(difference(a, b), error * rms(a)) << size;
+        EXPECT_LT(difference(a, b), kFirstOrderError * rms(a)) << size;
     }
 }
 
@@ -365,28 +297,6 @@ TEST(Displacement, ScreensHaveTheVarianceOfAngleOfArrival) {
     }
 }
 
-/// A picture-like scene of screens: many eddies a view, perspective.
-Scene long_view(double alpha = 0) {
-    TurbulenceSpec spec;
-    spec.cn2 = 3e-12;
-    spec.outer_scale = 2;
-    spec.inner_scale = 0.05;
-    spec.alpha = alpha;
-    spec.velocity = {0, 0, 0};
-    Scene scene = scene_with(spec);
-    scene.camera.horizontal_fov = 7;
-    return scene;
-}
-
-DisplacerSettings sized(int width, int height, double far) {
-    DisplacerSettings s;
-    s.negligible = 0;  // scenes of any strength
-    s.width = width;
-    s.height = height;
-    s.far = far;
-    return s;
-}
-
 TEST(Displacement, ExpectedRmsIsTheRealisedOne) {
     const Displacer displacer(long_view(0.01), sized(160, 90, 400));
     for (const double D : {400.0, 60.0}) {
@@ -502,66 +412,6 @@ TEST(Displacement, PiecesThreadsAndFramesGiveTheSameBits) {
     }
 }
 
-// ---- moving cameras ----
-
-class MovingCamera : public ::testing::Test {
-  protected:
-    std::filesystem::path file_ = std::filesystem::path(::testing::TempDir()) / "eikonal_displacement_test.chan";
-    void TearDown() override { std::filesystem::remove(file_); }
-
-    /// One key a line: frame tx ty tz rx ry rz.
-    Scene moving(Scene scene, const std::string& keys) {
-        std::ofstream(file_) << keys;
-        scene.camera.path = file_;
-        return scene;
-    }
-};
-
-TEST_F(MovingCamera, ASidewaysMoveShiftsAScreenByItsParallax) {
-    Scene scene = long_view();
-    auto& spec = std::get<TurbulenceSpec>(scene.media[0]);
-    spec.outer_scale = 50;
-    spec.lattice = {{256, 256, 1, 1}};  // a single screen at 40 m of 80
-    const DisplacerSettings settings = sized(128, 96, 80);
-    const double pixel = 40 / Displacer(scene, settings).camera(1).f_px;
-    const Displacer displacer(
-        moving(scene, fmt::format("1 0 0 0 0 0 0\n2 {0:.17g} {1:.17g} 0 0 0 0\n", 16 * pixel, 8 * pixel)), settings);
-    const Map a = map_of(displacer, 1, {0, 0, 64, 48}, 80), b = map_of(displacer, 2, {-16, 8, 64, 48}, 80);
-    // the slant factor of a ray is its own: a few parts in 10^5 here
-    EXPECT_LT(difference(a, b), 2e-3 * rms(a));
-}
-
-TEST_F(MovingCamera, APanShiftsThePattern) {
-    const DisplacerSettings settings = sized(128, 96, 300);
-    const double f = Displacer(long_view(), settings).camera(1).f_px;
-    const double degrees = std::atan(20 / f) * 180 / M_PI;
-    const Displacer displacer(moving(long_view(), fmt::format("1 0 0 0 0 0 0\n2 0 0 0 0 {:.17g} 0\n", -degrees)),
-                              settings);
-    const Map a = map_of(displacer, 1, {52, 30, 40, 36}, 300), b = map_of(displacer, 2, {32, 30, 40, 36}, 300);
-    EXPECT_LT(difference(a, b), 0.03 * rms(a)) << "off by the projection's own curvature only";
-    EXPECT_GT(difference(a, map_of(displacer, 2, {52, 30, 40, 36}, 300)), 0.5 * rms(a));
-}
-
-TEST_F(MovingCamera, ADollyThroughScreensNeverPops) {
-    const Displacer displacer(moving(long_view(), "1 0 0 0 0 0 0\n801 0 0 -40 0 0 0\n"), sized(64, 48, 300));
-    Map before = map_of(displacer, 1, {0, 0, 64, 48}, 200);
-    double largest = 0, typical = 0;
-    int frames = 0;
-    for (double frame = 1.25; frame < 120; frame += 0.25, ++frames) {
-        const Map after = map_of(displacer, frame, {0, 0, 64, 48}, 200);
-        largest = std::max(largest, difference(before, after));
-        typical += difference(before, after);
-        before = after;
-    }
-    EXPECT_LT(largest, 8 * typical / frames);
-    EXPECT_LT(largest, 0.2 * rms(before));
-}
-
-TEST_F(MovingCamera, TurningAwayIsRefusedWithARemedy) {
-    const Displacer displacer(moving(long_view(), "1 0 0 0 0 0 0\n2 0 0 0 0 90 0\n"), sized(64, 48, 300));
-    EXPECT_THROW(displacer.at(2, 300, 300), FrameError);
-}
-
 // ---- range ----
 
 TEST(Displacement, ExtremesStayFinite) {
@@ -576,7 +426,7 @@ TEST(Displacement, ExtremesStayFinite) {
                 spec.lattice.reset();
                 spec.period.reset();
                 if (form == TurbulenceForm::Lattice) spec = lattice_spec();
-                scene.optics.exaggeration = 1e6;
+                scene.optics.exaggeration = 1e3;
                 DisplacerSettings settings = sized(3, 2, far);
                 settings.fov = fov;
                 const Displacer displacer(scene, settings);

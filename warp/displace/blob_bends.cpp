@@ -1,9 +1,9 @@
 #include "warp/displace/blob_bends.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include "noise/blob_profile.h"
 #include "noise/dispatch.h"
@@ -18,11 +18,17 @@ constexpr double kLargestReach = 9;
 constexpr double kWholePass = 3.5449077018110318;  // 2√π
 constexpr double kSteepest = 0.42888194248035344;  // max t e^{-t²}, at t = 1/√2
 constexpr int kLastPixel = 1 << 29;
+/// Spacings of nodes that blobs are grouped by [px].
+constexpr std::array<int, 6> kSpacings{1, 2, 3, 4, 6, kWidestSpacing};
 
 /// t beyond which t e^{-t²} < level, 0 < level < kSteepest: fixed-point iteration of t = √ln(t/level).
 double tail_reach(double level) {
     double t = 1;
-    for (int i = 0; i < 12; ++i) t = std::sqrt(std::max(0.5, portable::log(t / level)));
+    for (int i = 0; i < 12; ++i) {
+        const double last = t;
+        t = std::sqrt(std::max(0.5, portable::log(t / level)));
+        if (std::abs(t - last) < 1e-10) break;
+    }
     return std::min(t * (1 + 1e-9), kLargestReach);
 }
 
@@ -75,8 +81,8 @@ BlobBends::BlobBends(const std::vector<Blob>& blobs, double strength, const Came
         const double distance = std::max(s.forward, blob.sigma);
         const double sigma_px =
             blob.sigma * camera.f_px * std::min(1.0, camera.pixel_aspect) / (perspective ? distance : 1.0);
-        s.spacing = 1;
-        while (2 * s.spacing <= std::min(kNodeSpacing * sigma_px, double{kWidestSpacing})) s.spacing *= 2;
+        for (const int spacing : kSpacings)
+            if (spacing == 1 || spacing <= kNodeSpacing * sigma_px) s.spacing = spacing;
         dvec2 low{-kLastPixel, -kLastPixel}, high{kLastPixel, kLastPixel};
         if (!perspective) {
             low = camera.pixel({s.right - s.reach, s.up + s.reach});
@@ -140,21 +146,57 @@ std::vector<double> blob_layers(const std::vector<const SeenBlob*>& blobs, doubl
     return even;
 }
 
-/// A row of nodes past one blob: what does not depend on depth.
+/// Nodes that a loop over a row takes at a time: rows are filled up to whole ones, which saves the loops' remainders.
+constexpr int kLanes = 8;
+
+int whole_lanes(int n) {
+    return (n + kLanes - 1) / kLanes * kLanes;
+}
+
+/// The nodes of a band as four planes of floats, X.x, X.y, S.x, S.y, for loops to add to; rows are kLanes longer.
+class Planes {
+  public:
+    explicit Planes(const Band& band)
+        : depths_(band.depths.size()),
+          stride_(static_cast<std::size_t>(band.columns + kLanes)),
+          plane_(static_cast<std::size_t>(band.rows) * depths_ * stride_),
+          values_(4 * plane_) {}
+
+    std::array<float*, 4> row(int j, std::size_t depth, int column) {
+        float* p = values_.data() + (static_cast<std::size_t>(j) * depths_ + depth) * stride_ +
+                   static_cast<std::size_t>(column);
+        return {p, p + plane_, p + 2 * plane_, p + 3 * plane_};
+    }
+    void store(Band& band) {
+        for (int j = 0; j < band.rows; ++j)
+            for (std::size_t k = 0; k < depths_; ++k) {
+                const auto [x, y, sx, sy] = row(j, k, 0);
+                Node* to = band.row(j, k);
+                for (int i = 0; i < band.columns; ++i) to[i] = Node{x[i], y[i], sx[i], sy[i]};
+            }
+    }
+
+  private:
+    std::size_t depths_, stride_, plane_;
+    std::vector<float> values_;
+};
+
+/// A row of rays past one blob: ray i has the slopes sx + i step, sy.
+struct RowGeometry {
+    double right, up, forward, inverse_sigma, amplitude, aspect;
+    double sx, step, sy;
+};
+
+/// What a row of nodes past one blob has in common for all depths, for layers within the blob.
 struct RowPast {
     std::vector<float> x, y;        ///< amplitude e^{-b²/σ²} b⊥ [px m]
     std::vector<double> a, length;  ///< -w_j/σ; L/σ
-    std::vector<float> e, g;        ///< ∫e^{-s²}, ∫s e^{-s²} from a to infinity
-    explicit RowPast(int n) : x(to(n)), y(to(n)), a(to(n)), length(to(n)), e(to(n)), g(to(n)) {}
-    static std::size_t to(int n) { return static_cast<std::size_t>(n); }
+    explicit RowPast(int n) : x(to(n)), y(to(n)), a(to(n)), length(to(n)) {}
+    static std::size_t to(int n) { return static_cast<std::size_t>(whole_lanes(n)); }
 };
 
-struct RowGeometry {
-    double right, up, forward, inverse_sigma, amplitude, aspect;
-    double sx, step, sy;  ///< slopes of the first node, between nodes, of the row
-};
-
-/// What cancels is double, the rest float; in two loops, each of one width. g by value: the arrays then cannot alias it.
+/// What cancels is double, the rest float; in two loops, each of one width. g by value: the arrays then cannot alias
+/// it.
 EIKONAL_CLONES void pass_perspective(const RowGeometry g, int n, float* __restrict x, float* __restrict y,
                                      double* __restrict a, double* __restrict length) {
     const double lat_y = g.sy * g.forward - g.up, along = g.forward + g.sy * g.up, square = 1 + g.sy * g.sy;
@@ -192,39 +234,64 @@ EIKONAL_CLONES void pass_orthographic(const RowGeometry g, int n, float* __restr
     }
 }
 
-/// nodes += the blob at depth z, within it.
-EIKONAL_CLONES void add_layer(const float* x, const float* y, const double* a, const double* length, double z, int n,
-                              Node* nodes) {
+/// nodes += the blob at depth z, within it or with the camera near it.
+EIKONAL_CLONES void add_layer(const float* __restrict x, const float* __restrict y, const double* __restrict a,
+                              const double* __restrict length, double z, int n, float* __restrict X,
+                              float* __restrict Y, float* __restrict SX, float* __restrict SY) {
     for (int i = 0; i < n; ++i) {
         const BlobProfile p = blob_profile(static_cast<float>(a[i]), static_cast<float>(z * length[i] + a[i]));
         const float rate = static_cast<float>(length[i]) * p.e;
-        nodes[i] += Node{x[i] * p.i1, y[i] * p.i1, x[i] * rate, y[i] * rate};
+        X[i] += x[i] * p.i1;
+        Y[i] += y[i] * p.i1;
+        SX[i] += x[i] * rate;
+        SY[i] += y[i] * rate;
     }
 }
 
-/// ∫e^{-s²}, ∫s e^{-s²} from a on: √π and nothing for a blob well ahead.
-EIKONAL_CLONES void whole_integrals(const double* a, int n, float* e, float* g) {
-    double latest = a[0];
-    for (int i = 1; i < n; ++i) latest = a[i] > latest ? a[i] : latest;
-    if (latest <= -kBlobAfar) {
-        std::fill(e, e + n, static_cast<float>(portable::kSqrtPi));
-        std::fill(g, g + n, 0.0f);
-        return;
-    }
-    for (int i = 0; i < n; ++i) {
-        const BlobProfile p = blob_profile(static_cast<float>(a[i]), kBlobProfileRange);
-        e[i] = p.e;
-        g[i] = p.g;
-    }
-}
+/// A row of rays all the way through one blob, up to depth z behind it, as polynomials in the node's number i. Within
+/// the blob's disc no term of theirs is much larger than their sum: single precision loses nothing.
+struct WholePass {
+    float x, dx, y;             ///< b⊥ [m]: x + i dx, y
+    float twist, dtwist;        ///< |b|² L² = b⊥² + (twist + i dtwist)²
+    float L2, dL2, ddL2;        ///< L²
+    float past, dpast, ddpast;  ///< L (z L - w_j) [m]
+    float inverse_sigma, amplitude_x, amplitude_y;
 
-/// nodes += the blob at depth z behind it: i1 = c e - g, straight in z.
-EIKONAL_CLONES void add_layer_behind(const float* x, const float* y, const double* a, const double* length,
-                                     const float* e, const float* g, double z, int n, Node* nodes) {
-    for (int i = 0; i < n; ++i) {
-        const float i1 = static_cast<float>(z * length[i] + a[i]) * e[i] - g[i];
-        const float rate = static_cast<float>(length[i]) * e[i];
-        nodes[i] += Node{x[i] * i1, y[i] * i1, x[i] * rate, y[i] * rate};
+    WholePass(const RowGeometry& g, double z, bool perspective) {
+        const auto f = [](double v) { return static_cast<float>(v); };
+        const double forward = perspective ? g.forward : 1;
+        x = f(g.sx * forward - g.right);
+        dx = f(g.step * forward);
+        y = f(g.sy * forward - g.up);
+        twist = perspective ? f(g.sx * g.up - g.sy * g.right) : 0;
+        dtwist = perspective ? f(g.step * g.up) : 0;
+        L2 = perspective ? f(1 + g.sx * g.sx + g.sy * g.sy) : 1;
+        dL2 = perspective ? f(2 * g.sx * g.step) : 0;
+        ddL2 = perspective ? f(g.step * g.step) : 0;
+        past = f(z - g.forward + (perspective ? g.sx * (z * g.sx - g.right) + g.sy * (z * g.sy - g.up) : 0));
+        dpast = perspective ? f(g.step * (2 * z * g.sx - g.right)) : 0;
+        ddpast = perspective ? f(g.step * g.step * z) : 0;
+        inverse_sigma = f(g.inverse_sigma);
+        amplitude_x = f(g.amplitude * static_cast<double>(portable::kSqrtPi));
+        amplitude_y = f(-g.aspect * g.amplitude * static_cast<double>(portable::kSqrtPi));
+    }
+};
+
+/// nodes += the blob well ahead of the camera, at a depth behind it: i1 = c √π, straight in z.
+EIKONAL_CLONES void add_whole(const WholePass p, int n, float* __restrict X, float* __restrict Y, float* __restrict SX,
+                              float* __restrict SY) {
+    for (int k = 0; k < n; ++k) {
+        const auto i = static_cast<float>(k);
+        const float x = p.x + i * p.dx, twist = p.twist + i * p.dtwist;
+        const float L2 = p.L2 + i * (p.dL2 + i * p.ddL2), past = p.past + i * (p.dpast + i * p.ddpast);
+        const float per_sigma = p.inverse_sigma / std::sqrt(L2);
+        const float e = gaussian_f(std::sqrt(x * x + p.y * p.y + twist * twist) * per_sigma);
+        const float vx = e * (p.amplitude_x * x), vy = e * (p.amplitude_y * p.y);
+        const float c = past * per_sigma, rate = L2 * per_sigma;
+        X[k] += vx * c;
+        Y[k] += vy * c;
+        SX[k] += vx * rate;
+        SY[k] += vy * rate;
     }
 }
 
@@ -233,73 +300,127 @@ struct NodeRange {
     int begin, end;
 };
 
-/// Those of `within` that a blob's disc cuts out of row j.
-NodeRange chord(const SeenBlob& b, const Camera& camera, const Band& band, int j, const NodeRange& within) {
-    const auto at = [&](int column) {
-        return camera.slope((band.column0 + column) * band.spacing + 0.5, (band.row0 + j) * band.spacing + 0.5);
-    };
-    const dvec2 first = at(within.begin), last = at(within.end - 1);
+/// Fills a band with blobs, one after the other.
+class BandFiller {
+  public:
+    BandFiller(Band& band, const Camera& camera)
+        : band_(band), camera_(camera), planes_(band), past_(band.columns), step_(band.spacing / camera.f_px) {
+        const double first = slope(0, 0).x, last = slope(band.columns - 1, 0).x;
+        widest2_ = std::max(first * first, last * last);
+    }
+    void add(const SeenBlob& b);
+    void finish() { planes_.store(band_); }
+
+  private:
+    dvec2 slope(int column, int row) const {
+        return camera_.slope((band_.column0 + column) * band_.spacing + 0.5, (band_.row0 + row) * band_.spacing + 0.5);
+    }
+    /// Those of `within` that a blob's disc cuts out of a row whose first node, of the band, has a slope.
+    NodeRange chord(const SeenBlob& b, const dvec2& first, const NodeRange& within) const;
+    /// One row of a blob, at every depth.
+    void add_row(const SeenBlob& b, bool ahead, int j, const NodeRange& columns);
+
+    Band& band_;
+    const Camera& camera_;
+    Planes planes_;
+    RowPast past_;
+    double step_;     ///< between nodes' slopes
+    double widest2_;  ///< largest square of a row's slopes
+};
+
+NodeRange BandFiller::chord(const SeenBlob& b, const dvec2& first, const NodeRange& within) const {
     // b² L² = lat_x² + lat_y² + twist² is at least the first two, L² at most that of the row's ends
     double forward = 1, reach2 = b.reach * b.reach;
-    if (band.perspective) {
+    if (band_.perspective) {
         if (b.forward <= b.reach) return within;
         forward = b.forward;
-        reach2 *= 1 + std::max(first.x * first.x, last.x * last.x) + first.y * first.y;
+        reach2 *= 1 + widest2_ + first.y * first.y;
     }
     const double lat_y = first.y * forward - b.up;
     const double half2 = reach2 - lat_y * lat_y;
     if (!(half2 > 0)) return {within.begin, within.begin};
-    const double half = std::sqrt(half2), step = band.spacing / camera.f_px;
-    const double low = ((b.right - half) / forward - first.x) / step,
-                 high = ((b.right + half) / forward - first.x) / step;
-    const int count = within.end - within.begin;
-    return {within.begin + std::max(0, static_cast<int>(std::floor(std::clamp(low, 0.0, double(count))))),
-            within.begin + std::min(count, static_cast<int>(std::ceil(std::clamp(high, -1.0, double(count)))) + 1)};
+    const double half = std::sqrt(half2), scale = 1 / (forward * step_);
+    const double middle = (b.right - first.x * forward) * scale;
+    const auto column = [&](double x) { return static_cast<int>(std::clamp<double>(x, within.begin, within.end - 1)); };
+    const double low = middle - half * scale, high = middle + half * scale;
+    if (high < within.begin || low > within.end) return {within.begin, within.begin};
+    return {column(low), column(high) + 1};
+}
+
+void BandFiller::add_row(const SeenBlob& b, bool ahead, int j, const NodeRange& columns) {
+    dvec2 first = slope(0, j);
+    const NodeRange part = chord(b, first, columns);
+    if (part.begin >= part.end) return;
+    const int n = whole_lanes(part.end - part.begin);
+    first.x += part.begin * step_;
+    const RowGeometry row{b.right, b.up,  b.forward, 1 / b.sigma, b.amplitude, camera_.pixel_aspect,
+                          first.x, step_, first.y};
+    bool passed = false;
+    for (std::size_t k = 0; k < band_.depths.size(); ++k) {
+        const double z = band_.depths[k];
+        if (z < b.forward - b.reach) continue;
+        const auto [X, Y, SX, SY] = planes_.row(j, k, part.begin);
+        if (ahead && z >= b.forward + b.reach) {
+            add_whole(WholePass(row, z, band_.perspective), n, X, Y, SX, SY);
+            continue;
+        }
+        float *x = past_.x.data(), *y = past_.y.data();
+        double *a = past_.a.data(), *length = past_.length.data();
+        if (!passed) (band_.perspective ? pass_perspective : pass_orthographic)(row, n, x, y, a, length);
+        passed = true;
+        add_layer(x, y, a, length, z, n, X, Y, SX, SY);
+    }
 }
 
 /// Adds one blob to the part of a band that its disc holds.
-void add_blob(const SeenBlob& b, const Camera& camera, Band& band, RowPast& past) {
-    const int spacing = band.spacing;
-    const auto node_floor = [&](int pixel) { return pixel_floor(static_cast<double>(pixel) / spacing); };
-    const NodeRange columns{std::max(0, node_floor(b.disc.x0) - band.column0),
-                            std::min(band.columns, node_floor(b.disc.x0 + b.disc.width) + 1 - band.column0)};
-    const int j0 = std::max(0, node_floor(b.disc.y0) - band.row0);
-    const int j1 = std::min(band.rows, node_floor(b.disc.y0 + b.disc.height) + 1 - band.row0);
+void BandFiller::add(const SeenBlob& b) {
+    const auto node_floor = [&](int pixel) { return floor_div(pixel, band_.spacing); };
+    const NodeRange columns{std::max(0, node_floor(b.disc.x0) - band_.column0),
+                            std::min(band_.columns, node_floor(b.disc.x0 + b.disc.width) + 1 - band_.column0)};
+    const int begin = std::max(0, node_floor(b.disc.y0) - band_.row0);
+    const int end = std::min(band_.rows, node_floor(b.disc.y0 + b.disc.height) + 1 - band_.row0);
     if (columns.begin >= columns.end) return;
-    const auto pass = band.perspective ? pass_perspective : pass_orthographic;
-    float *x = past.x.data(), *y = past.y.data(), *e = past.e.data(), *g = past.g.data();
-    double *a = past.a.data(), *length = past.length.data();
-    for (int j = j0; j < j1; ++j) {
-        const auto [i0, i1] = chord(b, camera, band, j, columns);
-        const int n = i1 - i0;
-        if (n <= 0) continue;
-        const dvec2 first = camera.slope((band.column0 + i0) * spacing + 0.5, (band.row0 + j) * spacing + 0.5);
-        pass({b.right, b.up, b.forward, 1 / b.sigma, b.amplitude, camera.pixel_aspect, first.x, spacing / camera.f_px,
-              first.y},
-             n, x, y, a, length);
-        bool whole = false;
-        for (std::size_t k = 0; k < band.depths.size(); ++k) {
-            const double z = band.depths[k];
-            Node* nodes = band.row(j, k) + i0;
-            if (z < b.forward - b.reach) continue;
-            if (z < b.forward + b.reach) {
-                add_layer(x, y, a, length, z, n, nodes);
-                continue;
-            }
-            if (!whole) whole_integrals(a, n, e, g);
-            whole = true;
-            add_layer_behind(x, y, a, length, e, g, z, n, nodes);
-        }
-    }
+    // w_j² = |x_j - q0|² - b², wherever the blob reaches
+    const double afar = double{kBlobAfar} * b.sigma;
+    const double w2 =
+        (band_.perspective ? b.right * b.right + b.up * b.up - b.reach * b.reach : 0) + b.forward * b.forward;
+    const bool ahead = b.forward > (band_.perspective ? b.reach : 0) && w2 >= afar * afar;
+    for (int j = begin; j < end; ++j) add_row(b, ahead, j, columns);
+}
+
+/// A band of nodes `spacing` pixels apart, past these blobs.
+Band filled_band(const std::vector<const SeenBlob*>& blobs, const Camera& camera, int spacing,
+                 std::vector<double> depths, const PixelWindow& cover) {
+    Band band;
+    band.spacing = spacing;
+    band.perspective = camera.projection == Projection::Perspective;
+    band.interpolation = DepthInterpolation::Hermite;
+    band.depths = std::move(depths);
+    band.cover(cover);
+    BandFiller filler(band, camera);
+    for (const SeenBlob* b : blobs) filler.add(*b);
+    filler.finish();
+    return band;
 }
 
 }  // namespace
 
+int BlobBends::finest_spacing() const {
+    int spacing = kWidestSpacing;
+    for (const SeenBlob& b : seen_) spacing = std::min(spacing, b.spacing);
+    return spacing;
+}
+
+std::vector<double> BlobBends::layers(double nearest, double farthest) const {
+    std::vector<const SeenBlob*> all;
+    for (const SeenBlob& b : seen_) all.push_back(&b);
+    return blob_layers(all, nearest, farthest);
+}
+
 std::vector<Band> BlobBends::bands(const PixelWindow& tile, const PixelWindow& cover, double nearest,
                                    double farthest) const {
     std::vector<Band> result;
-    const bool perspective = camera_.projection == Projection::Perspective;
-    for (int spacing = 1; spacing <= kWidestSpacing; spacing *= 2) {
+    for (const int spacing : kSpacings) {
         // interpolation reads nodes beyond the tile
         const int margin = 3 * spacing;
         const PixelWindow around{tile.x0 - margin, tile.y0 - margin, tile.width + 2 * margin, tile.height + 2 * margin};
@@ -307,17 +428,16 @@ std::vector<Band> BlobBends::bands(const PixelWindow& tile, const PixelWindow& c
         for (const SeenBlob& b : seen_)
             if (b.spacing == spacing && meets(b, around)) group.push_back(&b);
         if (group.empty()) continue;
-        Band band;
-        band.spacing = spacing;
-        band.perspective = perspective;
-        band.interpolation = DepthInterpolation::Hermite;
-        band.depths = blob_layers(group, nearest, farthest);
-        band.cover(cover);
-        RowPast past(band.columns);
-        for (const SeenBlob* b : group) add_blob(*b, camera_, band, past);
-        result.push_back(std::move(band));
+        result.push_back(filled_band(group, camera_, spacing, blob_layers(group, nearest, farthest), cover));
     }
     return result;
+}
+
+Band BlobBends::every_pixel(const PixelWindow& window, double depth) const {
+    std::vector<const SeenBlob*> group;
+    for (const SeenBlob& b : seen_)
+        if (meets(b, window)) group.push_back(&b);
+    return filled_band(group, camera_, 1, {depth}, window);
 }
 
 }  // namespace eikonal

@@ -51,8 +51,13 @@ class BlobBends {
 
     /// Filled bands for a tile: pixels of `cover`, which lies within it. Their layers depend on the tile alone.
     std::vector<Band> bands(const PixelWindow& tile, const PixelWindow& cover, double nearest, double farthest) const;
+    /// All of them on every pixel of a window, for objects at one depth: what bands() interpolates.
+    Band every_pixel(const PixelWindow& window, double depth) const;
 
     const std::vector<SeenBlob>& seen() const { return seen_; }
+    /// Spacing of nodes and depths of layers that suit all of them together.
+    int finest_spacing() const;
+    std::vector<double> layers(double nearest, double farthest) const;
 
   private:
     bool meets(const SeenBlob& blob, const PixelWindow& tile) const;

@@ -8,6 +8,7 @@
 
 #include "noise/dispatch.h"
 #include "warp/displace/layers.h"
+#include "warp/displace/stated_error.h"
 
 namespace eikonal {
 namespace {
@@ -21,12 +22,10 @@ constexpr int kTileUnit = 16;
 int tile_side(int picture, int largest) {
     return std::min(largest, (picture + kTileUnit - 1) / kTileUnit * kTileUnit);
 }
-/// Displacements beyond this [px] are cut to it, so that extreme scenes leave finite maps.
-constexpr float kLargestShift = 1e6f;
 /// Between nodes and layers the interpolant may exceed them by this factor.
 constexpr double kOvershoot = 1.6;
-/// Least depth that layers are made for [m]: nearer ones move as at this one.
-constexpr double kLeastDepth = 1e-6;
+/// Least depth that layers are made for [m]: nearer ones move as at this one, which is not at all.
+constexpr double kLeastDepth = 1e-12;
 
 }  // namespace
 
@@ -47,25 +46,48 @@ struct Displacer::Shot {
 };
 
 struct Displacer::Instant::State {
+    const MediaLayers* media;
     Camera camera;
-    double nearest, farthest, gain;
+    double t, nearest, farthest, gain;
     bool (*cancelled)();
     int tile_width, tile_height;
-    std::vector<LayerInstant> layers;
-    std::vector<std::vector<Band>> blank;  ///< of each layer
+    std::vector<LayerInstant> own;         ///< of every layer
+    std::vector<LayerInstant> joint;       ///< of second-order: the one that bends rays instead
+    std::vector<std::vector<Band>> blank;  ///< of each that does
     std::vector<Mirage> mirages;
 
+    const std::vector<LayerInstant>& bending() const { return joint.empty() ? own : joint; }
     std::vector<Band> tile_bands(const PixelWindow& tile, const PixelWindow& cover) const;
+    /// Those that may move a pixel of the window.
+    std::span<const Mirage> mirages_on(const PixelWindow& window) const {
+        const bool any = std::any_of(mirages.begin(), mirages.end(), [&](const Mirage& m) { return m.touches(window); });
+        return any ? mirages : std::span<const Mirage>{};
+    }
+    /// How far a bent ray may lead from its pixel [px].
+    int reach(const std::vector<Band>& bands, std::span<const Mirage> near, const PixelWindow& window) const;
 };
+
+int Displacer::Instant::State::reach(const std::vector<Band>& bands, std::span<const Mirage> near,
+                                     const PixelWindow& window) const {
+    double largest = 0;
+    for (const Band& band : bands) largest += band.largest_shift();
+    for (const Mirage& m : near) largest += m.largest_shift(window);
+    return static_cast<int>(std::min(std::ceil(kOvershoot * largest) + 1, 1e6));
+}
 
 /// The bands of every layer on a tile, filled and scaled.
 std::vector<Band> Displacer::Instant::State::tile_bands(const PixelWindow& tile, const PixelWindow& cover) const {
     std::vector<Band> bands;
+    const std::vector<LayerInstant>& layers = bending();
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (const auto* blobs = std::get_if<BlobBends>(&layers[i])) {
-            for (Band& band : blobs->bands(tile, cover, nearest, farthest)) bands.push_back(std::move(band));
+            for (Band& band : blobs->bands(tile, cover, nearest, farthest)) {
+                band.scale(static_cast<float>(gain));
+                bands.push_back(std::move(band));
+            }
             continue;
         }
+        const bool has_gain = std::holds_alternative<SecondOrderInstant>(layers[i]);
         for (Band band : blank[i]) {
             band.cover(cover);
             std::visit(
@@ -73,10 +95,10 @@ std::vector<Band> Displacer::Instant::State::tile_bands(const PixelWindow& tile,
                     if constexpr (requires { layer.fill(band, camera); }) layer.fill(band, camera);
                 },
                 layers[i]);
+            if (!has_gain) band.scale(static_cast<float>(gain));
             bands.push_back(std::move(band));
         }
     }
-    for (Band& band : bands) band.scale(static_cast<float>(gain));
     return bands;
 }
 
@@ -94,11 +116,20 @@ PixelWindow intersection(const PixelWindow& a, const PixelWindow& b) {
     return {x0, y0, std::min(a.x0 + a.width, b.x0 + b.width) - x0, std::min(a.y0 + a.height, b.y0 + b.height) - y0};
 }
 
-EIKONAL_CLONES void keep_finite(float* v, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-        const float a = v[i] == v[i] ? v[i] : 0.0f;
-        v[i] = a > kLargestShift ? kLargestShift : (a < -kLargestShift ? -kLargestShift : a);
-    }
+/// Whether all are numbers up to kLargestShift.
+EIKONAL_CLONES bool within_largest(const float* v, std::size_t n) {
+    constexpr auto largest = static_cast<float>(kLargestShift);
+    int beyond = 0;
+    for (std::size_t i = 0; i < n; ++i) beyond |= v[i] >= -largest && v[i] <= largest ? 0 : 1;
+    return beyond == 0;
+}
+
+void refuse_beyond(const float* v, std::size_t n) {
+    if (within_largest(v, n)) return;
+    throw FrameError(
+        fmt::format("a pixel would move by more than {:g} px, the most that a map holds; weaken the media (cn2, "
+                    "strength, temperatures), or lower optics.exaggeration, --gain or --rms",
+                    kLargestShift));
 }
 
 }  // namespace
@@ -120,15 +151,8 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
         // Nodes on lines depend on where the line begins, and the march's reach on the whole tile.
         const std::vector<Band> bands =
             state_->tile_bands(tile, march ? tile : PixelWindow{tile.x0, part.y0, tile.width, part.height});
-        const bool mirage = std::any_of(state_->mirages.begin(), state_->mirages.end(),
-                                        [&](const Mirage& m) { return m.touches(tile); });
-        const std::span<const Mirage> mirages = mirage ? state_->mirages : std::span<const Mirage>{};
-        double largest = 0;
-        if (march) {
-            for (const Band& band : bands) largest += band.largest_shift();
-            for (const Mirage& m : mirages) largest += m.largest_shift(tile);
-        }
-        const int reach = static_cast<int>(std::min(std::ceil(kOvershoot * largest) + 1, 1e6));
+        const std::span<const Mirage> mirages = state_->mirages_on(tile);
+        const int reach = march ? state_->reach(bands, mirages, tile) : 1;
         std::optional<MeetTile> meet;
         if (plane) meet.emplace(**plane, part, meeting, reach, mirages);
         BandRows row;
@@ -143,8 +167,38 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
                 std::fill(out, out + values, 0.0f);
                 row.add_constant_depth(part.x0, part.width, std::get<double>(depth), out);
             }
-            keep_finite(out, values);
+            refuse_beyond(out, values);
         }
+    });
+}
+
+StatedError Displacer::Instant::stated_error(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting,
+                                             const float* uv) const {
+    const auto samples = static_cast<int>(std::min<std::size_t>(window.area() / kPixelsPerSample, kErrorSamples));
+    return statistics_of(sampled_errors(window, depth, meeting, uv, std::max(samples, kFewestErrorSamples)));
+}
+
+std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window, const DepthSource& depth,
+                                                       DepthMeeting meeting, const float* uv, int samples) const {
+    const State& s = *state_;
+    const auto* plane = std::get_if<const DepthPlane*>(&depth);
+    const SecondOrderInstant bent = s.media->together(s.own, s.camera, s.t, s.nearest, s.farthest, s.gain, true);
+    return sample_errors(choose_samples(window, depth, uv, samples), [&](const SamplePixel& p) {
+        const PixelWindow pixel{p.x, p.y, 1, 1};
+        const std::vector<Band> bands{bent_pixel(bent, s.camera, p.x, p.y, plane ? s.farthest : p.depth)};
+        // the bent ray has passed over the surfaces: mirages only tell where it ends
+        const std::span<const Mirage> mirages = s.mirages_on(pixel);
+        BandRows row;
+        row.start(bands, p.y, mirages, 0);
+        std::array<float, 2> d{};
+        if (plane) {
+            MeetTile(**plane, pixel, meeting, s.reach(bands, {}, pixel), mirages).row(row, p.y, d.data());
+        } else {
+            const Shift shift = row.at(p.x, std::min(p.depth, row.end(p.x)));
+            d = {shift.x, shift.y};
+        }
+        refuse_beyond(d.data(), 2);
+        return Shift{d[0], d[1]};
     });
 }
 
@@ -157,6 +211,7 @@ Displacer::Instant Displacer::at(double frame, double nearest, double farthest, 
     nearest = std::max(nearest, kLeastDepth);
     farthest = std::max(nearest, farthest);
     auto state = std::make_unique<Instant::State>();
+    state->media = &shot_->media;
     state->camera = shot_->path.at(frame);
     state->nearest = nearest;
     state->farthest = farthest;
@@ -164,11 +219,13 @@ Displacer::Instant Displacer::at(double frame, double nearest, double farthest, 
     state->cancelled = shot_->settings.cancelled;
     state->tile_width = tile_side(shot_->settings.width, kTileWidth);
     state->tile_height = tile_side(shot_->settings.height, kTileHeight);
-    const double t = shot_->time(frame);
-    for (const MediumLayer& layer : shot_->media.layers()) {
-        state->layers.push_back(shot_->media.instant(layer, state->camera, t, nearest, farthest, gain));
-        state->blank.push_back(blank_bands(state->layers.back(), state->camera, nearest, farthest));
-    }
+    const double t = state->t = shot_->time(frame);
+    const MediaLayers& media = shot_->media;
+    state->own = media.instants(state->camera, t, nearest, farthest, gain);
+    if (media.second_order() && !state->own.empty())
+        state->joint.push_back(media.together(state->own, state->camera, t, nearest, farthest, gain, false));
+    for (const LayerInstant& layer : state->bending())
+        state->blank.push_back(blank_bands(layer, state->camera, nearest, farthest));
     for (const auto& [medium, spec] : shot_->media.surfaces()) {
         state->mirages.emplace_back(spec, shot_->media.law(), shot_->scene.optics.exaggeration,
                                     shot_->scene.optics.ray_equation, state->camera, farthest,

@@ -25,6 +25,12 @@ namespace eikonal {
 /// Where each pixel's object is: one axial distance for all [m], or a plane of them.
 using DepthSource = std::variant<double, const DepthPlane*>;
 
+/// What a map is off by, as its own samples say (stated_error.h) [px].
+struct StatedError {
+    int samples = 0;
+    double p50 = 0, p95 = 0, largest = 0;
+};
+
 class Displacer {
   public:
     /// UserError: media or models that do not apply, lattices that do not fit into memory, a broken camera path.
@@ -36,8 +42,17 @@ class Displacer {
     class Instant {
       public:
         /// Displacement of every pixel of `window` into `uv`: window.area() interleaved pairs. Tiles in parallel.
-        /// Finite for every finite depth > 0. FrameError once the settings' `cancelled` says so.
+        /// Finite for every finite depth > 0. FrameError once the settings' `cancelled` says so, and if a pixel would
+        /// move by more than kLargestShift.
         void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, float* uv) const;
+
+        /// The error of a map that map() made with the same arguments. The settings must ask for it (sample_errors).
+        /// FrameError as map().
+        StatedError stated_error(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting,
+                                 const float* uv) const;
+        /// The same, `samples` errors one by one [px].
+        std::vector<double> sampled_errors(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting,
+                                           const float* uv, int samples) const;
 
         const Camera& camera() const;
         Instant(Instant&&) noexcept;

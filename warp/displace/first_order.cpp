@@ -3,29 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise/portable_math.h"
+#include "warp/displace/aperture.h"
 #include "warp/displace/model.h"
 
 namespace eikonal {
 namespace {
-
-constexpr int kFewestApertureRays = 7, kMostApertureRays = 64;
-
-/// Points of equal weight on the unit disc (Vogel's spiral); one point, the centre, for a point aperture.
-std::vector<dvec2> aperture_points(double aperture, double cell) {
-    if (aperture <= 0) return {{0, 0}};
-    const double across = std::min(aperture / cell, 100.0);
-    const int n = std::clamp(static_cast<int>(across * across), kFewestApertureRays, kMostApertureRays);
-    std::vector<dvec2> points;
-    constexpr double kGoldenTurns = 0.38196601125010515;
-    for (int j = 0; j < n; ++j) {
-        double s, c;
-        portable::sincos_turns(j * kGoldenTurns, s, c);
-        const double r = std::sqrt((j + 0.5) / n);
-        points.push_back({r * c, r * s});
-    }
-    return points;
-}
 
 template <class Medium>
 void fill_node(Band& band, const FirstOrderInstant& model, const Medium& medium, const std::vector<dvec2>& disc,
@@ -66,15 +48,17 @@ void fill_node(Band& band, const FirstOrderInstant& model, const Medium& medium,
 
 void FirstOrderInstant::fill(Band& band, const Camera& camera) const {
     const std::vector<dvec2> disc = aperture_points(aperture, finest_cell());
-    std::visit(
-        [&](const auto& field) {
-            for (int r = 0; r < band.rows; ++r)
-                for (int c = 0; c < band.columns; ++c) {
-                    check_cancelled(cancelled);
-                    fill_node(band, *this, field, disc, camera, r, c);
-                }
-        },
-        medium);
+    const auto fill_from = [&](const auto& field) {
+        for (int r = 0; r < band.rows; ++r)
+            for (int c = 0; c < band.columns; ++c) {
+                check_cancelled(cancelled);
+                fill_node(band, *this, field, disc, camera, r, c);
+            }
+    };
+    if (const auto* lattice = std::get_if<std::shared_ptr<const LatticeSnapshot>>(&medium))
+        fill_from(**lattice);
+    else
+        fill_from(std::get<GradientNoiseInstant>(medium));
 }
 
 }  // namespace eikonal

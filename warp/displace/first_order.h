@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <variant>
 
 #include "noise/gradient_noise.h"
@@ -20,16 +21,12 @@ namespace eikonal {
 /// Rms error of a lattice's force that its spline is made finer for, relative to the rms (snapshot_slope_error): twice
 /// as fine as the lattice does even for power up to Nyquist. Lattices beyond 128³ keep to their own cells.
 inline constexpr double kFirstOrderSplineError = 0.015;
-/// Rms error against Eq. 7 along the lattice's trigonometric sum, relative to the rms, for any spectrum, spatial
-/// Nyquist modes apart: an even lattice's own force has none of their slope along that axis, whereas the field that a
-/// spline interpolates, here as in the tracer, has it. (tests/displacement_test.cpp)
+/// Rms error against Eq. 7 along the lattice's trigonometric sum, relative to the rms, for any spectrum; hence the
+/// difference from `spectral` on any lattice to 128³. (tests/displacement_test.cpp)
 inline constexpr double kFirstOrderError = 0.03;
-/// What those modes make of the paper's spectrum on 32³, whose power goes up to Nyquist: the difference from
-/// `spectral`.
-inline constexpr double kNyquistSlopes = 0.15;
 
-/// Steps of a ray at most: scenes that need more within the view of the first camera are refused (layers.h); what a
-/// camera turns to later is cut, a layer's steps to so many.
+/// Steps of a ray at most: scenes and frames that need more within the picture are refused (layers.h). Nodes beyond its
+/// edge, which only interpolation reads, are cut to so many a layer.
 inline constexpr double kMostFirstOrderSteps = 20000;
 
 /// A gradient-noise medium frozen at one time.
@@ -40,7 +37,7 @@ struct GradientNoiseInstant {
 };
 
 struct FirstOrderInstant {
-    std::variant<LatticeSnapshot, GradientNoiseInstant> medium;
+    std::variant<std::shared_ptr<const LatticeSnapshot>, GradientNoiseInstant> medium;
     double strength;                ///< multiplies ∇n: ray equation and exaggeration
     dvec3 cell;                     ///< of the field along x, y, z [m]
     double aperture;                ///< diameter [m]; 0: a point

@@ -24,7 +24,6 @@ constexpr double kAligned = 1e-9;
 constexpr double kLeastAlignment = 0.866;
 /// A Gaussian field's largest value over a shot, in parts of its rms.
 constexpr double kLargestOverRms = 6;
-constexpr int kMostFirstOrderDepths = 33;
 /// Instants over which the expected rms of blobs is taken.
 constexpr int kRmsInstants = 2;
 
@@ -53,39 +52,7 @@ int first_order_padding(const LatticeField& field) {
     return padding;
 }
 
-/// Layers of the first-order model: evenly spaced in the logarithm, a step or two apart where that is not too many.
-Band first_order_band(const FirstOrderInstant& model, const Camera& camera, double nearest, double farthest) {
-    Band band;
-    band.perspective = camera.projection == Projection::Perspective;
-    band.interpolation = DepthInterpolation::Hermite;
-    if (farthest > nearest) {
-        const double wanted = (farthest - nearest) * model.cells_along(camera.forward) / 2;
-        const int intervals =
-            std::clamp(static_cast<int>(std::ceil(std::min(wanted, 1e6))), 1, kMostFirstOrderDepths - 1);
-        for (int i = 0; i <= intervals; ++i) {
-            // near objects need finer layers, their angles being the larger
-            const double t = static_cast<double>(i) / intervals;
-            band.depths.push_back(i == 0           ? nearest
-                                  : i == intervals ? farthest
-                                                   : nearest * portable::pow(farthest / nearest, t));
-        }
-        band.depths.erase(std::unique(band.depths.begin(), band.depths.end()), band.depths.end());
-    } else {
-        band.depths = {nearest};
-    }
-    band.spacing = node_spacing(model.finest_cell() * camera.f_px / (band.perspective ? farthest : 1.0));
-    return band;
-}
-
 }  // namespace
-
-std::vector<Band> blank_bands(const LayerInstant& layer, const Camera& camera, double nearest, double farthest) {
-    if (const auto* screens = std::get_if<ScreensInstant>(&layer)) return screens->bands(camera, nearest, farthest);
-    if (const auto* tables = std::get_if<TablesInstant>(&layer)) return {tables->band(camera)};
-    if (const auto* rays = std::get_if<FirstOrderInstant>(&layer))
-        return {first_order_band(*rays, camera, nearest, farthest)};
-    return {};
-}
 
 MediaLayers::MediaLayers(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path)
     : scene_(scene),
@@ -102,13 +69,34 @@ MediaLayers::MediaLayers(const Scene& scene, const DisplacerSettings& settings, 
 
 void MediaLayers::keep(MediumLayer layer, std::string note) {
     const double rms = std::sqrt(expected_variance(layer, settings_.far));
-    if (kLargestOverRms * rms < settings_.negligible) {
+    if (!(rms <= kLargestShift))
+        throw UserError(
+            fmt::format("medium.{}: it would move pixels by {:.2g} px rms, and a map holds at most {:g} px; lower its "
+                        "cn2 or strength, optics.exaggeration, or --far",
+                        layer.medium, rms, kLargestShift));
+    // a camera may zoom in later; the rays of a wide view's corners cross more air, and show a bend larger
+    const double wide = corner_gain(layer.model);
+    if (!camera_moves_ && kLargestOverRms * rms * wide < settings_.negligible) {
         notes_.push_back(fmt::format("medium.{}: left out, it moves no pixel by more than {:g} px ({:.2g} px rms)",
                                      layer.medium, settings_.negligible, rms));
         return;
     }
     notes_.push_back(std::move(note));
     add_layer(std::move(layer));
+}
+
+double MediaLayers::corner_gain(Model model) const {
+    const double L = straight_ray(reference_, 0, 0).length;
+    switch (model) {
+        case Model::Table:
+        case Model::Tables:
+        case Model::Spectral:
+            return 1;  // parallel rays
+        case Model::Screens:
+            return L * std::sqrt(L);
+        default:
+            return L * L * L;
+    }
 }
 
 void MediaLayers::add_layer(MediumLayer layer) {
@@ -146,7 +134,7 @@ void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
         if (source.rate > 0) strongest = std::max(strongest, std::abs(law_.above_ambient(source.temperature)));
     // wherever they are: as if every blob were at the camera
     const double bound = largest_blob_shift({{}, 0, strongest}, strength_, reference_, 0, settings_.far) * cloud.most();
-    if (bound <= settings_.negligible) {
+    if (bound == 0 || (!camera_moves_ && bound <= settings_.negligible)) {
         notes_.push_back(fmt::format("medium.{}: left out, {}", i,
                                      cloud.most() == 0 ? "it has no blobs"
                                      : strongest == 0
@@ -155,8 +143,10 @@ void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
         return;
     }
     notes_.push_back(
-        fmt::format("medium.{}: model first-order (closed form), up to {} blobs at a time", i, cloud.most()));
-    add_layer({i, Model::FirstOrder, std::move(cloud), {}, 0});
+        fmt::format("medium.{}: model {}, up to {} blobs at a time", i,
+                    second_order() ? "second-order (through all media together)" : "first-order (closed form)",
+                    cloud.most()));
+    add_layer({i, own(Model::FirstOrder), std::move(cloud), {}, 0});
 }
 
 void MediaLayers::add(std::size_t i, const SurfaceSpec& spec) {
@@ -181,6 +171,7 @@ void MediaLayers::add(std::size_t i, const SurfaceSpec& spec) {
                           name, 1e3 * critical, height, height / critical)
             : fmt::format("{}: exact bending over a cold surface, seen from {:.3g} m up", name, height));
     surfaces_.emplace_back(i, spec);
+    surface_layers_.push_back(layer);
     surface_names_.push_back(name);
     reference_mirages_.push_back(std::move(mirage));
 }
@@ -200,12 +191,12 @@ void MediaLayers::add_screens(std::size_t i, const TurbulenceSpec& spec) {
     check_screens(spec, geometry, memory_limit());
     const ScreenGeometry middle = geometry[geometry.size() / 2];
     std::string note = fmt::format(
-        "medium.{}: model screens ({} view): {} screens of {} x {} x {} samples over {:g} m, {:.3g} m "
+        "medium.{}: model {} ({} view): {} screens of {} x {} x {} samples over {:g} m, {:.3g} m "
         "apart, periods {:.3g} x {:.3g} m, {:.3g} s",
-        i, perspective() ? "perspective" : "orthographic", geometry.size(), middle.nx, middle.ny, middle.nt,
+        i, name_of(own(Model::Screens)), perspective() ? "perspective" : "orthographic", geometry.size(), middle.nx, middle.ny, middle.nt,
         settings_.far, middle.thickness, middle.Lx, middle.Ly, middle.T);
     const std::size_t before = layers_.size();
-    keep({i, Model::Screens, ScreenField(spec, std::move(geometry), reference_.right, reference_.up), {}, 0},
+    keep({i, own(Model::Screens), ScreenField(spec, std::move(geometry), reference_.right, reference_.up), {}, 0},
          std::move(note));
     if (layers_.size() == before) return;
     if (glm::dot(spec.velocity, reference_.forward) != 0)
@@ -214,12 +205,25 @@ void MediaLayers::add_screens(std::size_t i, const TurbulenceSpec& spec) {
                         glm::dot(spec.velocity, reference_.forward)));
 }
 
-void MediaLayers::check_steps(std::size_t i, const dvec3& cell) {
+double MediaLayers::cells_a_metre(const Camera& camera, const dvec3& cell) const {
     double most = 0;  // of the rays through the corners, the longest and most oblique
     for (const double x : {0, settings_.width})
         for (const double y : {0, settings_.height})
-            most = std::max(most, glm::length(straight_ray(reference_, x, y).direction / cell));
-    const double steps = settings_.far * most;
+            most = std::max(most, glm::length(straight_ray(camera, x, y).direction / cell));
+    return most;
+}
+
+void MediaLayers::check_turned_steps(std::size_t i, const dvec3& cell, const Camera& camera) const {
+    const double steps = settings_.far * cells_a_metre(camera, cell);
+    if (steps > kMostFirstOrderSteps)
+        throw FrameError(fmt::format(
+            "medium.{}: the camera has turned or zoomed out so that first-order takes {:.0f} steps a ray; allowed "
+            "are at most {:g}; use a shorter --far, or a longer period or inner_scale",
+            i, steps, kMostFirstOrderSteps));
+}
+
+void MediaLayers::check_steps(std::size_t i, const dvec3& cell) {
+    const double most = cells_a_metre(reference_, cell), steps = settings_.far * most;
     if (!(steps > kManySteps)) return;
     const std::string what =
         fmt::format("medium.{}: first-order takes {:.0f} steps a ray, the path of {:g} m in cells of {:.3g} m", i,
@@ -240,6 +244,10 @@ Model MediaLayers::choose_model(std::size_t i, const TurbulenceSpec& spec, const
                            : !aligned        ? "the view is not along a lattice axis"
                            : !falloff_across ? "the falloff varies along the view"
                                              : "orthographic view along a lattice axis";
+    if (second_order()) {
+        why = "through all media together";
+        return Model::SecondOrder;
+    }
     if (!settings_.model || *settings_.model == Model::Screens) {
         why = obstacle;
         return spectral_applies ? Model::Spectral : Model::FirstOrder;
@@ -270,15 +278,17 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
     std::string why;
     const Model model = choose_model(i, spec, rays, why);
     const dvec3 cell{geometry.spacing(0), geometry.spacing(1), geometry.spacing(2)};
-    if (model == Model::FirstOrder) check_steps(i, cell);
+    const bool stepped = model >= Model::FirstOrder;
+    if (stepped) check_steps(i, cell);
     std::string note =
         fmt::format("medium.{}: model {} ({}): lattice {} x {} x {} x {}, periods {:g} x {:g} x {:g} m, {:g} s", i,
                     name_of(model), why, geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3],
                     geometry.period[0], geometry.period[1], geometry.period[2], geometry.period[3]);
     MediumLayer layer{i, model, LatticeField(spec, geometry), cell, 0};
     const auto& field = std::get<LatticeField>(layer.field);
-    if (model == Model::FirstOrder) {
-        layer.padding = first_order_padding(field);
+    if (stepped || settings_.sample_errors) layer.ray_padding = first_order_padding(field);
+    if (stepped) {
+        layer.padding = layer.ray_padding;
         if (const double error = snapshot_slope_error(field, layer.padding); error > kFirstOrderSplineError)
             notes_.push_back(fmt::format(
                 "medium.{}: too large a lattice for a finer spline, whose force is off by {:.2g} of its rms", i,
@@ -308,8 +318,10 @@ void MediaLayers::add_noise(std::size_t i, const TurbulenceSpec& spec) {
     GradientNoiseField field(spec);
     const dvec3 cell(std::min(0.5 * spec.inner_scale, kPartOfNoiseCell * field.smallest_cell()));
     check_steps(i, cell);
-    keep({i, Model::FirstOrder, std::move(field), cell, 0},
-         fmt::format("medium.{}: model first-order (gradient noise has no other), not periodic", i));
+    keep({i, own(Model::FirstOrder), std::move(field), cell, 0},
+         fmt::format("medium.{}: model {}, not periodic", i,
+                     second_order() ? "second-order (through all media together)"
+                                    : "first-order (gradient noise has no other)"));
 }
 
 void MediaLayers::refuse_other_model() const {
@@ -323,40 +335,6 @@ void MediaLayers::refuse_other_model() const {
         "--model {}: no medium of this scene suits it ({}); screens goes with form=\"screens\", the others with "
         "form=\"lattice\" (--set medium.0.form=lattice)",
         name_of(*settings_.model), have));
-}
-
-LayerInstant MediaLayers::instant(const MediumLayer& layer, const Camera& camera, double t, double nearest,
-                                  double farthest, double gain) const {
-    const double aperture = scene_.optics.aperture;
-    if (const auto* cloud = std::get_if<BlobCloud>(&layer.field))
-        return BlobBends(cloud->at(t), strength_, camera, farthest, gain);
-    if (const auto* screens = std::get_if<ScreenField>(&layer.field))
-        return ScreensInstant{screens->at(t), reference_, strength_,
-                              std::get<TurbulenceSpec>(scene_.media[layer.medium]).falloff};
-    if (const auto* noise = std::get_if<GradientNoiseField>(&layer.field))
-        return FirstOrderInstant{
-            GradientNoiseInstant{noise, t}, strength_, layer.cell, aperture, settings_.far, settings_.cancelled};
-    const auto& field = std::get<LatticeField>(layer.field);
-    const PathRays rays = nearest_axis(camera, aperture);
-    switch (layer.model) {
-        case Model::Table:
-            return slice_instant(field, t, rays, settings_.far, layer.constant, strength_, layer.padding);
-        case Model::Tables: {
-            std::vector<double> depths;
-            for (int k = 1; k <= kTables; ++k) depths.push_back(settings_.far * k / kTables);
-            return exact_instant(field, t, rays, depths, DepthInterpolation::Linear, strength_, layer.padding);
-        }
-        case Model::Spectral:
-            return exact_instant(field, t, rays, spectral_depths(field, rays, nearest, farthest),
-                                 DepthInterpolation::Hermite, strength_, layer.padding);
-        default:
-            return FirstOrderInstant{LatticeSnapshot(field, t, layer.padding),
-                                     strength_,
-                                     layer.cell,
-                                     aperture,
-                                     settings_.far,
-                                     settings_.cancelled};
-    }
 }
 
 double MediaLayers::expected_variance(const MediumLayer& layer, double D) const {
@@ -380,7 +358,8 @@ MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& la
     const auto draw = [&](int i, int c) { return stream.uniform(static_cast<std::uint64_t>(4 * i + c)); };
     const bool blobs = std::holds_alternative<BlobCloud>(layer.field);
     const double steps = blobs ? 1 : D * glm::length(reference_.forward / layer.cell);
-    const int rays = std::clamp(static_cast<int>(std::min(kRmsSteps / steps, 1e6)), kFewestRmsRays, kRmsRays);
+    const int most = blobs ? kRmsRays * instants / kRmsInstants : kRmsRays;
+    const int rays = std::clamp(static_cast<int>(std::min(kRmsSteps / steps, 1e6)), kFewestRmsRays, most);
     std::optional<LayerInstant> instant;
     SampledVariance sum;
     for (int i = 0; i < rays; ++i) {
@@ -393,7 +372,7 @@ MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& la
         const PixelWindow pair{x, y, across ? 2 : 1, across ? 1 : 2};
         std::vector<Band> bands;
         if (blobs) {
-            bands = std::get<BlobBends>(*instant).bands(pair, pair, D, D);
+            bands.push_back(std::get<BlobBends>(*instant).every_pixel(pair, D));
         } else {
             bands = blank_bands(*instant, reference_, D, D);
             bands.front().spacing = 1;
@@ -422,28 +401,6 @@ double MediaLayers::focusing_variance(const MediumLayer& layer, double D) const 
         return strength2 * 0.5 * (slope[0] + slope[1]);
     }
     return sampled_variance(layer, D, 1).slope;
-}
-
-std::uint64_t MediaLayers::instant_bytes() const {
-    double bytes = 0;
-    for (const MediumLayer& layer : layers_) {
-        if (const auto* screens = std::get_if<ScreenField>(&layer.field)) {
-            for (const ScreenGeometry& g : screens->screens())
-                bytes += sizeof(float) * (1.0 * g.nx * g.ny + 3.0 * kCoarseSide * kCoarseSide);
-        } else if (const auto* lattice = std::get_if<LatticeField>(&layer.field)) {
-            const auto& size = lattice->geometry().size;
-            const auto axis = static_cast<std::size_t>(nearest_axis(reference_, 0).axis);
-            const double samples = static_cast<double>(lattice->geometry().spatial_samples());
-            const double padding = layer.padding;
-            // a spline of the whole lattice, or at most four tables at each of the depths
-            bytes += layer.model == Model::FirstOrder
-                         ? 2 * sizeof(float) * samples * padding * padding * padding
-                         : 4 * sizeof(float) * samples / size[axis] * padding * padding * kMostSpectralDepths;
-        } else if (const auto* cloud = std::get_if<BlobCloud>(&layer.field)) {
-            bytes += static_cast<double>(sizeof(Blob) + sizeof(SeenBlob)) * cloud->most();
-        }
-    }
-    return static_cast<std::uint64_t>(std::min(bytes, 1e18));
 }
 
 }  // namespace eikonal

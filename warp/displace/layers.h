@@ -8,8 +8,12 @@
 ///     blobs            first-order, in closed form
 ///     surface          exact bending in two dimensions (mirage.h), whatever the model
 ///
+/// second-order, if asked for, takes all media but surfaces together: one ray through their sum.
+///
 /// What cannot move any pixel by `negligible` is left out, and a note says so. Failures: UserError for media and models
-/// that do not go together, for fields that do not fit into memory, and for first-order paths of too many cells.
+/// that do not go together, for fields that do not fit into memory, for first-order paths of too many cells, and for
+/// media that are expected to move pixels by more than kLargestShift. FrameError from instant() for paths of too many
+/// cells that a camera turns to later.
 #pragma once
 
 #include <string>
@@ -24,6 +28,7 @@
 #include "warp/displace/lattice_tables.h"
 #include "warp/displace/mirage.h"
 #include "warp/displace/model.h"
+#include "warp/displace/second_order.h"
 #include "warp/displace/thin_screens.h"
 #include "warp/scene/camera.h"
 
@@ -37,10 +42,11 @@ struct MediumLayer {
     dvec3 cell{1, 1, 1};  ///< of the field [m], first-order
     double constant = 0;  ///< c of `table`
     int padding = 1;      ///< of the splines of a lattice
+    int ray_padding = 1;  ///< of the spline that rays of second-order go through
 };
 
-/// A layer frozen at one time.
-using LayerInstant = std::variant<ScreensInstant, TablesInstant, FirstOrderInstant, BlobBends>;
+/// A layer frozen at one time, or all of them as one.
+using LayerInstant = std::variant<ScreensInstant, TablesInstant, FirstOrderInstant, BlobBends, SecondOrderInstant>;
 
 /// Empty bands for a layer's instant; blobs have theirs made tile by tile.
 std::vector<Band> blank_bands(const LayerInstant& layer, const Camera& camera, double nearest, double farthest);
@@ -56,6 +62,16 @@ class MediaLayers {
 
     LayerInstant instant(const MediumLayer& layer, const Camera& camera, double t, double nearest, double farthest,
                          double gain) const;
+    /// Of all layers, in their order.
+    std::vector<LayerInstant> instants(const Camera& camera, double t, double nearest, double farthest,
+                                       double gain) const;
+    /// Whether the layers' rays go through all of them together (second-order).
+    bool second_order() const { return settings_.model == Model::SecondOrder; }
+    /// Rays through the sum of the layers: the nodes' rays of second-order or, if `reference`, through the surfaces, too,
+    /// and in finer steps than second-order's own if that is the model: what any model is judged by. own: instants() with the same arguments. gain multiplies
+    /// every n - n_ambient but the surfaces'. This must outlive it.
+    SecondOrderInstant together(const std::vector<LayerInstant>& own, const Camera& camera, double t, double nearest,
+                                double farthest, double gain, bool reference) const;
 
     /// Variance of |d| [px²] that a layer is expected to have for objects at axial distance D, before any falloff, over
     /// pixels and time.
@@ -70,6 +86,7 @@ class MediaLayers {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
+    Model own(Model usual) const { return second_order() ? Model::SecondOrder : usual; }
     bool perspective() const { return reference_.projection == Projection::Perspective; }
     void add(std::size_t i, const TurbulenceSpec& spec);
     void add(std::size_t i, const BlobsSpec& spec);
@@ -79,12 +96,18 @@ class MediaLayers {
     void add_lattice(std::size_t i, const TurbulenceSpec& spec);
     void add_noise(std::size_t i, const TurbulenceSpec& spec);
     Model choose_model(std::size_t i, const TurbulenceSpec& spec, const PathRays& rays, std::string& why) const;
-    /// Keeps a layer unless it is too weak to see.
+    /// Keeps a layer unless it is too weak to see. UserError if it is too strong for any map.
     void keep(MediumLayer layer, std::string note);
+    /// How many times a ray through the picture's corner is displaced as far as the one along the axis, at most.
+    double corner_gain(Model model) const;
     /// Keeps it, and warns of folding rays.
     void add_layer(MediumLayer layer);
+    /// Cells [m] that the picture's most oblique ray crosses a metre of depth.
+    double cells_a_metre(const Camera& camera, const dvec3& cell) const;
     /// Warns of, or refuses, first-order rays of too many steps through cells [m].
     void check_steps(std::size_t i, const dvec3& cell);
+    /// FrameError if a later camera's are too many.
+    void check_turned_steps(std::size_t i, const dvec3& cell, const Camera& camera) const;
     void refuse_other_model() const;
     struct SampledVariance {
         double shift = 0;  ///< of |d| [px²]
@@ -92,6 +115,8 @@ class MediaLayers {
     };
     /// instants: of blobs; other media take a time for each ray.
     SampledVariance sampled_variance(const MediumLayer& layer, double D, int instants) const;
+
+    FieldPart part_of(const MediumLayer& layer, const LayerInstant& instant, double t) const;
 
     const Scene& scene_;
     const DisplacerSettings& settings_;
@@ -101,6 +126,7 @@ class MediaLayers {
     IndexLaw law_;
     std::vector<MediumLayer> layers_;
     std::vector<std::pair<std::size_t, SurfaceSpec>> surfaces_;
+    std::vector<SurfaceLayer> surface_layers_;  ///< the same
     std::vector<std::string> surface_names_;  ///< for messages
     std::vector<Mirage> reference_mirages_;   ///< as the reference camera sees them
     std::vector<std::string> notes_, warnings_;

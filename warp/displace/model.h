@@ -12,13 +12,14 @@
 namespace eikonal {
 
 /// Cheapest first.
-enum class Model { Table, Tables, Spectral, Screens, FirstOrder };
+enum class Model { Table, Tables, Spectral, Screens, FirstOrder, SecondOrder };
 
-inline constexpr std::array<std::pair<std::string_view, Model>, 5> kModelNames{{{"table", Model::Table},
+inline constexpr std::array<std::pair<std::string_view, Model>, 6> kModelNames{{{"table", Model::Table},
                                                                                 {"tables", Model::Tables},
                                                                                 {"spectral", Model::Spectral},
                                                                                 {"screens", Model::Screens},
-                                                                                {"first-order", Model::FirstOrder}}};
+                                                                                {"first-order", Model::FirstOrder},
+                                                                                {"second-order", Model::SecondOrder}}};
 constexpr std::string_view name_of(Model model) {
     for (const auto& [name, value] : kModelNames)
         if (value == model) return name;
@@ -27,6 +28,8 @@ constexpr std::string_view name_of(Model model) {
 
 /// A medium, or the dropped parts of one, that together move no pixel by more than this are left out [px].
 inline constexpr double kNegligibleShift = 0.002;
+/// Largest component of a displacement that a map may hold [px]; what would exceed it is refused, not cut.
+inline constexpr double kLargestShift = 1e6;
 
 /// What the scene leaves to the footage and the command line.
 struct DisplacerSettings {
@@ -38,6 +41,7 @@ struct DisplacerSettings {
     std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
     /// Media that move no pixel by more than this before any gain are left out [px] >= 0.
     double negligible = kNegligibleShift;
+    bool sample_errors = false;     ///< stated_error() will be asked for
     bool (*cancelled)() = nullptr;  ///< asked now and then; true ends the frame with a FrameError
 };
 

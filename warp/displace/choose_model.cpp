@@ -1,0 +1,72 @@
+#include "warp/displace/choose_model.h"
+
+#include <algorithm>
+
+#include "noise/error.h"
+#include "warp/displace/stated_error.h"
+
+namespace eikonal {
+namespace {
+
+std::vector<double> choice_frames(const Scene& scene, const DisplacerSettings& settings) {
+    if (!scene.camera.path) return {static_cast<double>(scene.time.first_frame)};
+    const auto [first, last] = CameraPath(scene.camera, settings.width, settings.height).frames();
+    return {first, 0.5 * (first + last), last};
+}
+
+/// The largest p95 of the frames.
+double sampled_p95(const Displacer& displacer, const Scene& scene, const DisplacerSettings& settings,
+                   const std::vector<double>& distances, double gain) {
+    double worst = 0;
+    for (const double frame : choice_frames(scene, settings)) {
+        const Displacer::Instant instant = displacer.at(frame, distances.front(), distances.back(), gain);
+        std::vector<double> errors;
+        std::vector<float> uv(2 * static_cast<std::size_t>(settings.width));
+        for (int r = 0; r < kChoiceRows; ++r) {
+            const PixelWindow row{0, (2 * r + 1) * settings.height / (2 * kChoiceRows), settings.width, 1};
+            for (const double distance : distances) {
+                instant.map(row, distance, DepthMeeting::Own, uv.data());
+                const int samples = std::max<int>(1, kErrorSamples / (kChoiceRows * static_cast<int>(distances.size())));
+                const std::vector<double> some =
+                    instant.sampled_errors(row, distance, DepthMeeting::Own, uv.data(), samples);
+                errors.insert(errors.end(), some.begin(), some.end());
+            }
+        }
+        worst = std::max(worst, statistics_of(std::move(errors)).p95);
+    }
+    return worst;
+}
+
+}  // namespace
+
+ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double tolerance, bool one_distance,
+                         const GainOf& gain_of) {
+    settings.sample_errors = true;
+    const double far = settings.far;
+    const std::vector<double> distances =
+        one_distance ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
+    ModelChoice choice{};
+    for (const auto& [name, model] : kModelNames) {
+        settings.model = model;
+        std::unique_ptr<Displacer> displacer;
+        try {
+            displacer = std::make_unique<Displacer>(scene, settings);
+        } catch (const UserError& refusal) {
+            if (model == kModelNames.back().second && !choice.displacer) throw;
+            choice.tried.push_back({model, refusal.what()});
+            continue;
+        }
+        const double p95 = sampled_p95(*displacer, scene, settings, distances, gain_of(*displacer));
+        choice.tried.push_back({model, "", p95});
+        if (!choice.displacer || p95 < choice.p95) {
+            choice.displacer = std::move(displacer);
+            choice.model = model;
+            choice.p95 = p95;
+        }
+        choice.within = choice.p95 <= tolerance;
+        if (choice.within) break;
+    }
+    return choice;
+}
+
+}  // namespace eikonal

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cmath>
+
+#include "noise/portable_math.h"
+#include "warp/displace/layers.h"
+
+namespace eikonal {
+namespace {
+
+constexpr int kMostFirstOrderDepths = 33;
+/// The nearest layer, in cells: within one, X is a parabola, and pixels of next to no depth need no layers.
+constexpr double kNearestLayer = 0.1;
+
+/// Layers of the first-order model: evenly spaced in the logarithm, a step or two apart where that is not too many.
+Band first_order_band(const FirstOrderInstant& model, const Camera& camera, double nearest, double farthest) {
+    Band band;
+    band.perspective = camera.projection == Projection::Perspective;
+    band.interpolation = DepthInterpolation::Hermite;
+    nearest = std::min(std::max(nearest, kNearestLayer / model.cells_along(camera.forward)), farthest);
+    if (farthest > nearest) {
+        const double wanted = (farthest - nearest) * model.cells_along(camera.forward) / 2;
+        const int intervals =
+            std::clamp(static_cast<int>(std::ceil(std::min(wanted, 1e6))), 1, kMostFirstOrderDepths - 1);
+        for (int i = 0; i <= intervals; ++i) {
+            // near objects need finer layers, their angles being the larger
+            const double t = static_cast<double>(i) / intervals;
+            band.depths.push_back(i == 0           ? nearest
+                                  : i == intervals ? farthest
+                                                   : nearest * portable::pow(farthest / nearest, t));
+        }
+        band.depths.erase(std::unique(band.depths.begin(), band.depths.end()), band.depths.end());
+    } else {
+        band.depths = {nearest};
+    }
+    band.spacing = node_spacing(model.finest_cell() * camera.f_px / (band.perspective ? farthest : 1.0));
+    return band;
+}
+
+/// Nodes and layers of second-order: as fine as every layer's own.
+struct Grid {
+    int spacing = kWidestSpacing;
+    std::vector<double> depths;
+
+    void add(int other_spacing, const std::vector<double>& other_depths) {
+        spacing = std::min(spacing, other_spacing);
+        depths.insert(depths.end(), other_depths.begin(), other_depths.end());
+    }
+    void finish(double nearest, double farthest) {
+        std::erase_if(depths, [&](double z) { return z <= nearest || z >= farthest; });
+        depths.push_back(nearest);
+        if (farthest > nearest) depths.push_back(farthest);
+        std::sort(depths.begin(), depths.end());
+        depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
+    }
+};
+
+}  // namespace
+
+std::vector<Band> blank_bands(const LayerInstant& layer, const Camera& camera, double nearest, double farthest) {
+    if (const auto* screens = std::get_if<ScreensInstant>(&layer)) return screens->bands(camera, nearest, farthest);
+    if (const auto* tables = std::get_if<TablesInstant>(&layer)) return {tables->band(camera)};
+    if (const auto* rays = std::get_if<FirstOrderInstant>(&layer))
+        return {first_order_band(*rays, camera, nearest, farthest)};
+    if (const auto* bent = std::get_if<SecondOrderInstant>(&layer)) return {bent->band(camera)};
+    return {};
+}
+
+LayerInstant MediaLayers::instant(const MediumLayer& layer, const Camera& camera, double t, double nearest,
+                                  double farthest, double gain) const {
+    const double aperture = scene_.optics.aperture;
+    if (const auto* cloud = std::get_if<BlobCloud>(&layer.field))
+        return BlobBends(cloud->at(t), strength_, camera, farthest, gain);
+    if (const auto* screens = std::get_if<ScreenField>(&layer.field))
+        return ScreensInstant{screens->at(t), reference_, strength_,
+                              std::get<TurbulenceSpec>(scene_.media[layer.medium]).falloff};
+    if (camera_moves_ && layer.model >= Model::FirstOrder) check_turned_steps(layer.medium, layer.cell, camera);
+    if (const auto* noise = std::get_if<GradientNoiseField>(&layer.field))
+        return FirstOrderInstant{
+            GradientNoiseInstant{noise, t}, strength_, layer.cell, aperture, settings_.far, settings_.cancelled};
+    const auto& field = std::get<LatticeField>(layer.field);
+    const PathRays rays = nearest_axis(camera, aperture);
+    switch (layer.model) {
+        case Model::Table:
+            return slice_instant(field, t, rays, settings_.far, layer.constant, strength_, layer.padding);
+        case Model::Tables: {
+            std::vector<double> depths;
+            for (int k = 1; k <= kTables; ++k) depths.push_back(settings_.far * k / kTables);
+            return exact_instant(field, t, rays, depths, DepthInterpolation::Linear, strength_, layer.padding);
+        }
+        case Model::Spectral:
+            return exact_instant(field, t, rays, spectral_depths(field, rays, nearest, farthest),
+                                 DepthInterpolation::Hermite, strength_, layer.padding);
+        default:
+            return FirstOrderInstant{std::make_shared<const LatticeSnapshot>(field, t, layer.padding),
+                                     strength_,
+                                     layer.cell,
+                                     aperture,
+                                     settings_.far,
+                                     settings_.cancelled};
+    }
+}
+
+std::vector<LayerInstant> MediaLayers::instants(const Camera& camera, double t, double nearest, double farthest,
+                                                double gain) const {
+    std::vector<LayerInstant> result;
+    for (const MediumLayer& layer : layers_) result.push_back(instant(layer, camera, t, nearest, farthest, gain));
+    return result;
+}
+
+FieldPart MediaLayers::part_of(const MediumLayer& layer, const LayerInstant& instant, double t) const {
+    if (const auto* cloud = std::get_if<BlobCloud>(&layer.field)) return {BlobsPart{cloud->at(t), kRayBlobReach}};
+    if (const auto* field = std::get_if<ScreenField>(&layer.field)) {
+        const auto& screens = std::get<ScreensInstant>(instant);
+        const ScreenFrame frame{reference_.position, reference_.right, reference_.up, reference_.forward, {}};
+        return {ScreensPart{field, screens.screens, frame, screens.falloff}};
+    }
+    if (const auto* noise = std::get_if<GradientNoiseField>(&layer.field)) return {NoisePart{noise, t}};
+    const auto& field = std::get<LatticeField>(layer.field);
+    if (const auto* rays = std::get_if<FirstOrderInstant>(&instant))
+        return {LatticePart{&field, std::get<std::shared_ptr<const LatticeSnapshot>>(rays->medium)}};
+    return {LatticePart{&field, std::make_shared<const LatticeSnapshot>(field, t, layer.ray_padding)}};
+}
+
+SecondOrderInstant MediaLayers::together(const std::vector<LayerInstant>& own, const Camera& camera, double t,
+                                         double nearest, double farthest, double gain, bool reference) const {
+    std::vector<FieldPart> parts;
+    Grid grid;
+    double cell = std::numeric_limits<double>::infinity(), step = second_order() && reference ? kFineStep : kStep;
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        const MediumLayer& layer = layers_[i];
+        parts.push_back(part_of(layer, own[i], t));
+        parts.back().weight = gain;
+        if (std::holds_alternative<GradientNoiseField>(layer.field)) step = std::min(step, kNoiseStep);
+        if (const auto* blobs = std::get_if<BlobBends>(&own[i]))
+            grid.add(blobs->finest_spacing(), blobs->layers(nearest, farthest));
+        else
+            for (const Band& band : blank_bands(own[i], camera, nearest, farthest)) grid.add(band.spacing, band.depths);
+        // thin screens are averaged over the aperture as they are made, and blobs are large
+        if (std::holds_alternative<LatticeField>(layer.field) ||
+            std::holds_alternative<GradientNoiseField>(layer.field))
+            cell = std::min({cell, layer.cell.x, layer.cell.y, layer.cell.z});
+    }
+    if (reference)
+        for (const SurfaceLayer& surface : surface_layers_) parts.push_back({&surface});
+    grid.finish(nearest, farthest);
+    return {FieldInstant(scene_.optics, std::move(parts)),    step, grid.spacing,  std::move(grid.depths),
+            std::isfinite(cell) ? scene_.optics.aperture : 0, cell, settings_.far, settings_.cancelled};
+}
+
+std::uint64_t MediaLayers::instant_bytes() const {
+    double bytes = 0;
+    for (const MediumLayer& layer : layers_) {
+        if (const auto* screens = std::get_if<ScreenField>(&layer.field)) {
+            for (const ScreenGeometry& g : screens->screens())
+                bytes += sizeof(float) * (1.0 * g.nx * g.ny + 3.0 * kCoarseSide * kCoarseSide);
+        } else if (const auto* lattice = std::get_if<LatticeField>(&layer.field)) {
+            const auto& size = lattice->geometry().size;
+            const auto axis = static_cast<std::size_t>(nearest_axis(reference_, 0).axis);
+            const double samples = static_cast<double>(lattice->geometry().spatial_samples());
+            const double padding = layer.padding;
+            // a spline of the whole lattice, or at most four tables at each of the depths
+            bytes += layer.model >= Model::FirstOrder
+                         ? 2 * sizeof(float) * samples * padding * padding * padding
+                         : 4 * sizeof(float) * samples / size[axis] * padding * padding * kMostSpectralDepths;
+        } else if (const auto* cloud = std::get_if<BlobCloud>(&layer.field)) {
+            bytes += static_cast<double>(sizeof(Blob) + sizeof(SeenBlob)) * cloud->most();
+        }
+    }
+    return static_cast<std::uint64_t>(std::min(bytes, 1e18));
+}
+
+}  // namespace eikonal

@@ -1,0 +1,170 @@
+#include "warp/displace/second_order.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "warp/displace/aperture.h"
+#include "warp/displace/model.h"
+
+namespace eikonal {
+namespace {
+
+/// How near an edge a step ends, or begins behind it, as a part of the path: beyond what rounding may confuse.
+constexpr double kHair = 1e-9;
+
+class BentRay {
+  public:
+    BentRay(const SecondOrderInstant& model, const StraightRay& ray)
+        : field_(model.field), longest_(model.step), ray_(ray) {}
+
+    /// Follows the ray to axial depth `target`, and tells `visit` the end of every step.
+    template <class Visit>
+    void advance(double target, Visit&& visit) {
+        while (z_ < target && !ended_) {
+            const dvec3 x = ray_.at(z_) + x1_, p = ray_.direction + slope_;
+            const double length = glm::length(p);
+            const dvec3 direction = p / length;
+            const double left = target - z_;
+            if (const double clear = field_.clear_way(x, direction) / length; clear > 0) {
+                if (clear >= left) break;
+                drift(clear);
+                z_ += clear;
+            } else {
+                const double edge = field_.way_to_edge(x, direction) / length;
+                const double safe = longest_ * field_.longest_step(x, direction) / length;
+                const double hair = kHair * target;
+                const bool over = edge <= 2 * hair;
+                const double h = over ? std::min(left, edge + hair) : std::min({left, safe, edge - hair});
+                if (over)
+                    drift(h);
+                else
+                    step(h);
+                z_ = h == left ? target : z_ + h;
+                if (++steps_ == kMostRaySteps || !(glm::length(slope_) < kSteepestBend * ray_.length)) ended_ = true;
+            }
+            visit();
+        }
+        if (z_ < target) {
+            drift(target - z_);
+            z_ = target;
+            visit();
+        }
+    }
+
+    double depth() const { return z_; }
+    /// X and S of the bent ray where it is at the axial depth that it has been followed to: exact projection.
+    std::array<double, 4> shift(const Camera& camera) const {
+        const dvec3 p = ray_.direction + slope_;
+        const double rate = glm::dot(p, camera.forward);
+        if (!(rate > 0)) return {0, 0, 0, 0};
+        const dvec3 at = x1_ - (glm::dot(x1_, camera.forward) / rate) * p;
+        const dvec3 turn = p / rate - ray_.direction;
+        const double fx = camera.f_px, fy = -camera.f_px * camera.pixel_aspect;
+        return {fx * glm::dot(at, camera.right), fy * glm::dot(at, camera.up), fx * glm::dot(turn, camera.right),
+                fy * glm::dot(turn, camera.up)};
+    }
+
+  private:
+    void drift(double h) { x1_ += h * slope_; }
+
+    dvec3 acceleration(double z, const dvec3& x1, const dvec3& slope) {
+        const dvec3 x = ray_.at(z) + x1, p = ray_.direction + slope;
+        const auto [force, speed] = field_.motion(x, p);
+        if (!(speed > 0)) {
+            ended_ = true;
+            return {0, 0, 0};
+        }
+        return (ray_.length * ray_.length / (speed * speed)) * force;
+    }
+
+    /// Nyström's method: the force at the start, twice the middle in one, the end.
+    void step(double h) {
+        const dvec3 f1 = acceleration(z_, x1_, slope_);
+        const dvec3 f2 =
+            acceleration(z_ + 0.5 * h, x1_ + (0.5 * h) * slope_ + (h * h / 8) * f1, slope_ + (0.5 * h) * f1);
+        const dvec3 f3 = acceleration(z_ + h, x1_ + h * slope_ + (h * h / 2) * f2, slope_ + h * f2);
+        x1_ += h * slope_ + (h * h / 6) * (f1 + 2.0 * f2);
+        slope_ += (h / 6) * (f1 + 4.0 * f2 + f3);
+    }
+
+    const FieldInstant& field_;
+    double longest_;
+    StraightRay ray_;
+    double z_ = 0;
+    dvec3 x1_{0, 0, 0}, slope_{0, 0, 0};
+    int steps_ = 0;
+    bool ended_ = false;
+};
+
+Node as_node(const std::array<double, 4>& s) {
+    return Node{static_cast<float>(s[0]), static_cast<float>(s[1]), static_cast<float>(s[2]), static_cast<float>(s[3])};
+}
+
+/// X and S at the depths, averaged over the aperture.
+std::vector<Node> bundle(const SecondOrderInstant& model, const std::vector<dvec2>& disc, const Camera& camera,
+                         const StraightRay& ray, const std::vector<double>& depths) {
+    std::vector<std::array<double, 4>> sum(depths.size());
+    for (const dvec2& q : disc) {
+        StraightRay part = ray;
+        const dvec3 aside = 0.5 * model.aperture * (q.x * camera.right + q.y * camera.up);
+        part.origin += aside;
+        if (camera.projection == Projection::Perspective) {
+            part.direction -= aside / model.focus;
+            part.length = glm::length(part.direction);
+        }
+        BentRay bent(model, part);
+        for (std::size_t k = 0; k < depths.size(); ++k) {
+            bent.advance(depths[k], [] {});
+            const std::array<double, 4> shift = bent.shift(camera);
+            for (std::size_t c = 0; c < 4; ++c) sum[k][c] += shift[c] / static_cast<double>(disc.size());
+        }
+    }
+    std::vector<Node> nodes;
+    for (const auto& s : sum) nodes.push_back(as_node(s));
+    return nodes;
+}
+
+}  // namespace
+
+Band SecondOrderInstant::band(const Camera& camera) const {
+    Band band;
+    band.perspective = camera.projection == Projection::Perspective;
+    band.interpolation = DepthInterpolation::Hermite;
+    band.spacing = spacing;
+    band.depths = depths;
+    return band;
+}
+
+void SecondOrderInstant::fill(Band& band, const Camera& camera) const {
+    const std::vector<dvec2> disc = aperture_points(aperture, cell);
+    for (int r = 0; r < band.rows; ++r)
+        for (int c = 0; c < band.columns; ++c) {
+            check_cancelled(cancelled);
+            const StraightRay ray =
+                straight_ray(camera, (band.column0 + c) * band.spacing + 0.5, (band.row0 + r) * band.spacing + 0.5);
+            const std::vector<Node> nodes = bundle(*this, disc, camera, ray, band.depths);
+            for (std::size_t k = 0; k < nodes.size(); ++k) band.row(r, k)[c] += nodes[k];
+        }
+}
+
+Band bent_pixel(const SecondOrderInstant& model, const Camera& camera, int x, int y, double farthest) {
+    check_cancelled(model.cancelled);
+    Band band = model.band(camera);
+    band.spacing = 1;
+    band.depths.clear();
+    const StraightRay ray = straight_ray(camera, x + 0.5, y + 0.5);
+    std::vector<Node> nodes;
+    BentRay central(model, ray);
+    central.advance(farthest, [&] {
+        if (!band.depths.empty() && !(central.depth() > band.depths.back())) return;
+        band.depths.push_back(central.depth());
+        nodes.push_back(as_node(central.shift(camera)));
+    });
+    if (model.aperture > 0)
+        nodes = bundle(model, aperture_points(model.aperture, model.cell), camera, ray, band.depths);
+    band.cover({x, y, 1, 1});
+    band.nodes = std::move(nodes);
+    return band;
+}
+
+}  // namespace eikonal

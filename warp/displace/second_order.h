@@ -1,0 +1,57 @@
+/// Model `second-order`: the ray equation itself, along every node's ray through the sum of all media but surfaces.
+///
+///     x1'' = L² F(P(z) + x1, d + x1')/|dx/du|²,   P(z) = origin + z d the straight ray by axial depth
+///
+/// to which Eq. 7 is the first approximation, F at P alone; second order adds ∫(u - w)(x1·∇)F dw (PHYSICS 6). Taking F
+/// where the bent ray is holds that term and those of higher order. Steps of Nyström's fourth-order method, at most
+/// `step` times as long as the field says (FieldInstant::longest_step) and ending where it jumps. The shift is
+/// the exact projection of the bent ray's point at each depth, not the first-order one.
+///
+/// An aperture is a bundle as in first_order.h, whose bends are averaged. Thin screens are averaged over it already.
+///
+/// A ray that has turned by more than kSteepestBend, or has met no index, goes on straight from there: that far no warp
+/// holds.
+#pragma once
+
+#include "noise/field.h"
+#include "warp/displace/band.h"
+#include "warp/displace/ray_frame.h"
+
+namespace eikonal {
+
+/// Tangent of the bend against the straight ray beyond which it is not followed.
+inline constexpr double kSteepestBend = 1;
+/// Steps of a ray at most; what is left is then crossed straight.
+inline constexpr int kMostRaySteps = 20000;
+/// A tracer's step is a part of the smallest feature; a warp's is so many of them.
+inline constexpr double kStep = 2;
+/// The same where there is gradient noise, whose cells are no smoother than they must.
+inline constexpr double kNoiseStep = 0.5;
+/// The step by which second-order itself is judged.
+inline constexpr double kFineStep = 0.5;
+/// Where its blobs end [σ]: e^{-16} of each is left out.
+inline constexpr double kRayBlobReach = 4;
+/// Rms error of shifts with kStep against kFineStep, relative to the rms shift. (tests/second_order_test.cpp)
+inline constexpr double kSecondOrderError = 2e-3;
+
+struct SecondOrderInstant {
+    FieldInstant field;             ///< gain included
+    double step;                    ///< in longest steps of the field
+    int spacing;                    ///< of nodes [px]
+    std::vector<double> depths;     ///< of a band's layers [m]
+    double aperture = 0;            ///< diameter [m]; 0: a point
+    double cell = 1;                ///< finest of the media that it averages over [m]
+    double focus = 1;               ///< axial depth on which a perspective aperture's rays converge [m]
+    bool (*cancelled)() = nullptr;  ///< as DisplacerSettings
+
+    /// A band without nodes, to be covered and filled.
+    Band band(const Camera& camera) const;
+    /// Adds X and S at every node and depth. FrameError once cancelled.
+    void fill(Band& band, const Camera& camera) const;
+};
+
+/// The ray of one pixel alone, without interpolation from nodes: a filled band that covers it, whose layers are the
+/// ray's own steps up to axial depth `farthest` [m]. What the other models are measured by.
+Band bent_pixel(const SecondOrderInstant& model, const Camera& camera, int x, int y, double farthest);
+
+}  // namespace eikonal

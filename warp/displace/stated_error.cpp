@@ -1,0 +1,74 @@
+#include "warp/displace/stated_error.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eikonal {
+namespace {
+
+/// The additive recurrence of the plastic number: points that fill the unit square evenly, however many.
+constexpr double kPlasticX = 0.7548776662466927, kPlasticY = 0.5698402909980532;
+
+double fraction(double x) {
+    return x - std::floor(x);
+}
+
+/// Sorts runs of equal parts of `pixels`, so that every step of a walk through them goes on in depth and back and forth
+/// in strength.
+void stratify(std::vector<SamplePixel>& pixels) {
+    const auto strength = [](const SamplePixel& p) { return p.map.x * p.map.x + p.map.y * p.map.y; };
+    std::stable_sort(pixels.begin(), pixels.end(),
+                     [](const SamplePixel& a, const SamplePixel& b) { return a.depth < b.depth; });
+    for (std::size_t s = 0; s < kDepthStrata; ++s) {
+        const auto at = [&](std::size_t i) {
+            return pixels.begin() + static_cast<std::ptrdiff_t>(i * pixels.size() / kDepthStrata);
+        };
+        std::stable_sort(at(s), at(s + 1), [&](const SamplePixel& a, const SamplePixel& b) {
+            return s % 2 == 0 ? strength(a) < strength(b) : strength(b) < strength(a);
+        });
+    }
+}
+
+}  // namespace
+
+std::vector<SamplePixel> choose_samples(const PixelWindow& window, const DepthSource& depth, const float* uv,
+                                        int count) {
+    const auto* plane = std::get_if<const DepthPlane*>(&depth);
+    std::vector<SamplePixel> candidates;
+    for (int i = 0; i < kErrorCandidates; ++i) {
+        const int x = static_cast<int>(fraction(0.5 + (i + 1) * kPlasticX) * window.width);
+        const int y = static_cast<int>(fraction(0.5 + (i + 1) * kPlasticY) * window.height);
+        const float* d = uv + 2 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width) +
+                                   static_cast<std::size_t>(x));
+        const int px = window.x0 + x, py = window.y0 + y;
+        candidates.push_back({px, py, plane ? double{(*plane)->at(px, py)} : std::get<double>(depth), {d[0], d[1]}});
+    }
+    stratify(candidates);
+    std::vector<SamplePixel> samples;
+    for (int i = 0; i < count; ++i)
+        samples.push_back(candidates[static_cast<std::size_t>((2 * i + 1) * kErrorCandidates / (2 * count))]);
+    return samples;
+}
+
+std::vector<double> sample_errors(const std::vector<SamplePixel>& samples,
+                                  const std::function<Shift(const SamplePixel&)>& truth) {
+    std::vector<double> errors(samples.size());
+    tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+        const Shift d = truth(samples[i]);
+        const double ex = double{samples[i].map.x} - d.x, ey = double{samples[i].map.y} - d.y;
+        errors[i] = std::sqrt(ex * ex + ey * ey);
+    });
+    return errors;
+}
+
+StatedError statistics_of(std::vector<double> errors) {
+    std::sort(errors.begin(), errors.end());
+    const auto quantile = [&](double q) {
+        return errors[static_cast<std::size_t>(q * static_cast<double>(errors.size() - 1) + 0.5)];
+    };
+    return {static_cast<int>(errors.size()), quantile(0.5), quantile(0.95), errors.back()};
+}
+
+}  // namespace eikonal
