@@ -56,16 +56,14 @@ TEST_F(UsageTest, CommandsAndOptions) {
     wrong_warp({"--distance"}, {"--distance", "missing"});
     for (const char* text : {"nan", "five", "1e999", "5m"})
         wrong_warp({"--distance", text}, {"--distance", "'" + std::string(text) + "'"});
-    wrong_warp({"--distance", "0"}, {"--distance", "more than 0"});
+    wrong_warp({"--distance", "0"}, {"--distance", "from 1e-12"});
     wrong_warp({"--rms", "-1"}, {"--rms", "0 or more"});
     wrong_warp({"--shutter", "2"}, {"--shutter", "from 0 to 1"});
     wrong_warp({"--threads", "0"}, {"--threads", "1 to 1024"});
     wrong_warp({"--seed", "-1"}, {"--seed"});
     wrong_warp({"--seed", "99999999999999999999"}, {"--seed", "from 0 to 18446744073709551615"});
     wrong_warp({"--fov", "180"}, {"--fov", "179.99"});
-    wrong_warp({"--model", "auto"}, {"--model", "'auto'", "not in this version", "screens"});
-    wrong_warp({"--tolerance", "0.1"}, {"--tolerance: not in this version"});
-    EXPECT_EQ(run({"warp", "in.png", "-o", "out.png", "--tolerences", "1"}).err.find("did you mean"),
+    EXPECT_NE(run({"warp", "in.png", "-o", "out.png", "--tolerences", "1"}).err.find("did you mean '--tolerance'"),
               std::string::npos);
     wrong_warp({"--ground", "2"}, {"--ground", "HEIGHT,HORIZON"});
     wrong_warp({"--ground", "-2,50%"}, {"--ground", "-2"});

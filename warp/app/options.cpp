@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
-#include <span>
 
 #include "noise/error.h"
 #include "warp/app/help_format.h"
@@ -45,7 +44,14 @@ constexpr const char* kMore = "`eikonal COMMAND --help` tells more.";
 template <class T>
 using Names = std::vector<std::pair<std::string, T>>;
 
-const Names<Model> kModels(kModelNames.begin(), kModelNames.end());
+Names<ModelRequest> model_requests() {
+    Names<ModelRequest> names;
+    for (const auto& [name, model] : kModelNames) names.emplace_back(name, ModelRequest{false, model});
+    names.emplace_back("auto", ModelRequest{true, {}});
+    return names;
+}
+
+const Names<ModelRequest> kModels = model_requests();
 const Names<Filter> kFilters{
     {"bilinear", Filter::Bilinear}, {"cubic", Filter::Cubic}, {"lanczos3", Filter::Lanczos3}, {"area", Filter::Area}};
 const Names<Edge> kEdges{
@@ -72,22 +78,13 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& va
     return meant.empty() ? otherwise : meant;
 }
 
-/// Options of a later version.
-constexpr std::array<std::string_view, 1> kLaterOptions{"--tolerance"};
-/// Models of a later version.
-constexpr std::array<std::string_view, 2> kLaterModels{"auto", "second-order"};
-
-bool contains(std::span<const std::string_view> list, std::string_view word) {
-    return std::find(list.begin(), list.end(), word) != list.end();
-}
-
-/// An option whose value is one of a list of names. `later`: of a later version.
+/// An option whose value is one of a list of names.
 template <class Target, class T>
-void add_choice(CLI::App& app, const std::string& flag, Target& target, const Names<T>& names, const std::string& help,
-                std::span<const std::string_view> later = {}) {
+void add_choice(CLI::App& app, const std::string& flag, Target& target, const Names<T>& names,
+                const std::string& help) {
     app.add_option_function<std::string>(
            flag,
-           [flag, &target, &names, later](const std::string& text) {
+           [flag, &target, &names](const std::string& text) {
                std::vector<std::string> valid;
                for (const auto& [name, value] : names) {
                    if (name == text) {
@@ -96,9 +93,6 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target, const Na
                    }
                    valid.push_back(name);
                }
-               if (contains(later, text))
-                   throw UserError(
-                       fmt::format("{}: '{}' is not in this version; one of {}", flag, text, joined(names)));
                throw UserError(
                    fmt::format("{}: '{}' is none of {}{}", flag, text, joined(names), suggestion(text, valid)));
            },
@@ -129,6 +123,9 @@ void add_number(CLI::App& app, const std::string& flag, Target& target, const st
 
 bool positive(double v) {
     return v > 0;
+}
+bool is_length(double v) {
+    return v >= kSmallestPositive && v <= kLargestValue;
 }
 bool not_negative(double v) {
     return v >= 0;
@@ -178,9 +175,11 @@ void add_scene(CLI::App& app, SceneOptions& o) {
                [](double v) { return v >= kSmallestFov && v <= kLargestFov; });
 }
 
+const std::string kLengths = fmt::format("from {:g} to {:g} m", kSmallestPositive, kLargestValue);
+
 void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
     begin_group(app, "Depth");
-    add_number(app, "--distance", o.distance, "M", "constant distance along the axis [m]", "more than 0", positive);
+    add_number(app, "--distance", o.distance, "M", "constant distance along the axis [m]", kLengths, is_length);
     app.add_option("--depth", o.depth,
                    std::string("depth map; 0 m, infinity and NaN are background") +
                        (with_input ? "; :CHANNEL alone names a channel of INPUT" : ""))
@@ -194,8 +193,8 @@ void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
                    "flat ground: camera height [m] and the horizon's row from the top, in pixels or as 55%")
         ->type_name("HEIGHT,HORIZON");
     add_number(app, "--far", o.far, "M",
-               fmt::format("distance of the background (default: the scene's, else {:g})", kDefaultFar), "more than 0",
-               positive);
+               fmt::format("distance of the background (default: the scene's, else {:g})", kDefaultFar), kLengths,
+               is_length);
     add_choice(app, "--depth-meeting", o.meeting, kMeetings,
                "how a bent ray meets the depth map: followed to the first surface (default), iterated, or the pixel's "
                "own depth");
@@ -207,8 +206,13 @@ void add_strength(CLI::App& app, StrengthOptions& o) {
     add_number(app, "--rms", o.rms, "PX", "scale the displacement to this rms at --far, fixed over the shot",
                "0 or more", not_negative);
     add_number(app, "--gain", o.gain, "X", "multiply the displacement", "0 or more", not_negative);
-    add_choice(app, "--model", o.model, kModels, "how displacement is computed (default: what suits each medium)",
-               kLaterModels);
+    add_choice(app, "--model", o.model, kModels,
+               "how displacement is computed (default: what suits each medium); auto: the cheapest within --tolerance");
+    add_number(app, "--tolerance", o.tolerance, "PX",
+               fmt::format("error of the displacement that is allowed, 95 of 100 pixels (default {:g}); implies "
+                           "--model auto unless a model is named",
+                           kDefaultTolerance),
+               "more than 0", positive);
     app.add_option("--stmap", o.stmap, "also write the map as STMap (Nuke, Blender)")->type_name("FILE");
 }
 
@@ -220,6 +224,8 @@ void add_run(CLI::App& app, RunOptions& o) {
     app.add_flag("--overwrite", o.overwrite, "make every frame anew (default: keep finished ones)");
     app.add_flag("--skip-bad-frames", o.skip_bad_frames, "go on after a frame that cannot be read or written");
     app.add_flag("--verbose,-v", o.verbose, "say what is computed and why");
+    app.add_flag("--explain", o.explain,
+                 "write nothing, but say what the frames need and will be: media, model, displacement, error, time, memory");
     add_choice(app, "--progress", o.progress, kProgress, "how progress is shown on stderr");
     app.add_option("--report", o.report, "write what was done as JSON")->type_name("FILE");
 }
@@ -278,7 +284,7 @@ void add_field(CLI::App& app, FieldOptions& o) {
            "which medium of the scene, from 0 (default)")
         ->type_name("N");
     add_run(app, o.run);
-    for (const char* name : {"--frames", "--skip-bad-frames", "--report"}) app.remove_option(app.get_option(name));
+    for (const char* name : {"--frames", "--skip-bad-frames", "--report", "--explain"}) app.remove_option(app.get_option(name));
 }
 
 /// One line from CLI11's own error, with the nearest valid name for a misspelt option or command.
@@ -299,7 +305,6 @@ void add_field(CLI::App& app, FieldOptions& o) {
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
         for (const std::string& word : at->remaining(true)) {
             const std::string name = word.substr(0, word.find('='));
-            if (contains(kLaterOptions, name)) throw UserError(fmt::format("{}: not in this version", name));
             if (name.rfind("--", 0) == 0)
                 throw UserError(fmt::format("{}: '{}' has no such option{}", name, at->get_name(),
                                             suggestion(name, valid, "; see --help")));

@@ -40,12 +40,22 @@ struct DepthArguments {
     std::optional<DepthMeeting> meeting;  ///< left out: march
 };
 
+/// --model: a model for every medium that it suits; left out: each medium's default.
+struct ModelRequest {
+    bool automatic = false;  ///< the cheapest within the tolerance
+    std::optional<Model> model;
+};
+
+/// Largest p95 of the displacement's error that `--model auto` allows, if no --tolerance is given [px].
+inline constexpr double kDefaultTolerance = 0.1;
+
 /// How strong, by which model, and what is written beside the picture.
 struct StrengthOptions {
     std::optional<std::string> mask;  ///< FILE[:CHANNEL]
     std::optional<double> rms;
     double gain = 1;
-    std::optional<Model> model;
+    ModelRequest model;
+    std::optional<double> tolerance;  ///< [px]
     std::optional<std::filesystem::path> stmap;
 };
 
@@ -56,8 +66,12 @@ struct RunOptions {
     bool overwrite = false;
     bool skip_bad_frames = false;
     bool verbose = false;
+    bool explain = false;
     ProgressStyle progress = ProgressStyle::Auto;
     std::optional<std::filesystem::path> report;
+
+    /// Whether anyone will read how far the maps are off.
+    bool states_errors() const { return verbose || report || explain; }
 };
 
 struct WarpOptions {

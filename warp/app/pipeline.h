@@ -27,6 +27,7 @@ struct FrameRecord {
     int frame = 0;
     std::string error;            ///< empty: written
     double rms = 0, largest = 0;  ///< displacement [px]
+    std::optional<StatedError> stated;
     double seconds = 0;           ///< of work
     std::vector<Remark> remarks;  ///< on its files
 };

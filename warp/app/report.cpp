@@ -1,10 +1,58 @@
 #include "warp/app/report.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "warp/image/atomic_file.h"
 
 namespace eikonal {
+namespace {
+
+/// The frame whose p95 is the largest; null if no frame has one.
+const FrameRecord* worst_frame(const RunResult& result) {
+    const FrameRecord* worst = nullptr;
+    for (const FrameRecord& r : result.records)
+        if (r.stated && (worst == nullptr || r.stated->p95 > worst->stated->p95)) worst = &r;
+    return worst;
+}
+
+std::optional<std::string> tolerance_warning(const Shot& shot, const RunResult& result) {
+    const FrameRecord* worst = worst_frame(result);
+    if (worst == nullptr || !shot.tolerance() || worst->stated->p95 <= *shot.tolerance()) return {};
+    const auto beyond = std::count_if(result.records.begin(), result.records.end(), [&](const FrameRecord& r) {
+        return r.stated && r.stated->p95 > *shot.tolerance();
+    });
+    return fmt::format("--tolerance {:g}: {} of {} frames go beyond it, frame {} by most: {:.2g} px in 95 of 100 sampled "
+                       "pixels; eikonal-trace render follows the rays truly",
+                       *shot.tolerance(), beyond, result.records.size(), worst->frame, worst->stated->p95);
+}
+
+nlohmann::ordered_json choice_json(const ModelChoice& choice) {
+    nlohmann::ordered_json json{
+        {"model", name_of(choice.model)}, {"p95_px", choice.p95}, {"within_tolerance", choice.within}};
+    for (const TriedModel& tried : choice.tried) {
+        nlohmann::ordered_json entry{{"model", name_of(tried.model)}};
+        if (tried.refusal.empty())
+            entry["p95_px"] = tried.p95;
+        else
+            entry["refusal"] = tried.refusal;
+        json["tried"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+}  // namespace
+
+void tell_errors(const Shot& shot, const RunResult& result, bool verbose) {
+    if (const FrameRecord* worst = worst_frame(result); worst != nullptr && verbose)
+        fmt::print(stderr,
+                   "eikonal: stated error: 95 of 100 of {} sampled pixels are off by {:.2g} px at most, half of them by "
+                   "{:.2g} px (frame {}, the worst)\n",
+                   worst->stated->samples, worst->stated->p95, worst->stated->p50, worst->frame);
+    if (const auto warning = tolerance_warning(shot, result)) fmt::print(stderr, "eikonal: warning: {}\n", *warning);
+}
 
 void write_report(const std::filesystem::path& file, const Shot& shot, const RunResult& result, std::size_t kept) {
     nlohmann::ordered_json json;
@@ -19,6 +67,9 @@ void write_report(const std::filesystem::path& file, const Shot& shot, const Run
     json["notes"] = shot.notes();
     json["warnings"] = shot.warnings();
     for (const std::string& warning : result.warnings) json["warnings"].push_back(warning);
+    if (const auto warning = tolerance_warning(shot, result)) json["warnings"].push_back(*warning);
+    if (shot.tolerance()) json["tolerance_px"] = *shot.tolerance();
+    if (shot.choice() != nullptr) json["model_choice"] = choice_json(*shot.choice());
     json["interrupted"] = result.interrupted;
     json["frames_kept"] = kept;
     auto& frames = json["frames"] = nlohmann::ordered_json::array();
@@ -27,6 +78,11 @@ void write_report(const std::filesystem::path& file, const Shot& shot, const Run
         if (r.error.empty()) {
             frame["rms_px"] = r.rms;
             frame["largest_px"] = r.largest;
+            if (r.stated)
+                frame["stated_error_px"] = {{"p50", r.stated->p50},
+                                            {"p95", r.stated->p95},
+                                            {"max", r.stated->largest},
+                                            {"samples", r.stated->samples}};
         } else {
             frame["error"] = r.error;
         }

@@ -8,7 +8,12 @@
 
 namespace eikonal {
 
-/// Writes frames (rms and largest displacement in px, seconds, error), models, gain, expected rms, notes and warnings.
+/// Tells on stderr that frames are off by more than the shot's tolerance and, if `verbose`, by how much they are off
+/// at all.
+void tell_errors(const Shot& shot, const RunResult& result, bool verbose);
+
+/// Writes frames (rms and largest displacement and stated error in px,
+/// seconds, error), models and how they were chosen, gain, expected rms, notes and warnings.
 void write_report(const std::filesystem::path& file, const Shot& shot, const RunResult& result, std::size_t kept);
 
 }  // namespace eikonal

@@ -4,6 +4,7 @@
 
 #include "noise/error.h"
 #include "warp/app/commands.h"
+#include "warp/app/explain.h"
 #include "warp/app/outputs.h"
 #include "warp/app/pipeline.h"
 #include "warp/app/report.h"
@@ -40,10 +41,14 @@ int run(const MapOptions& options) {
     std::vector<int> frames =
         options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{scene.time.first_frame};
     const PixelWindow display = choose_display(scene, options.depth, frames);
-    Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {});
+    Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {}, options.run.states_errors());
     outputs.check(frames, shot.companions());
     shot.tell(frames, options.run.verbose);
     const std::size_t kept = options.run.overwrite ? 0 : outputs.keep_finished(frames);
+    if (options.run.explain) {
+        explain(shot, {display, frames, kept, limit.threads(), shot.frame_bytes(kMapBytes), {}});
+        return 0;
+    }
     if (!options.run.skip_bad_frames)
         if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     if (!frames.empty()) shot.try_companions(frames.front(), nullptr, {}, display);
@@ -58,8 +63,10 @@ int run(const MapOptions& options) {
                         [] { return std::vector{0}; },
                         [&](FrameItem& item) {
                             const int frame = item.record.frame;
-                            const DisplacementMap map =
-                                std::move(shot.maps(frame, {0}, nullptr, {}, display, item.record.remarks).front());
+                            const Shot::Maps made =
+                                shot.maps(frame, {0}, nullptr, {}, display, item.record.remarks);
+                            const DisplacementMap& map = made.of_instants.front();
+                            item.record.stated = made.error;
                             const MapStatistics size = statistics(map);
                             item.record.rms = size.rms;
                             item.record.largest = size.largest;
@@ -71,6 +78,7 @@ int run(const MapOptions& options) {
     RunResult result;
     if (!frames.empty())
         result = run_pipeline(stages, options.run, frames.size(), limit.threads(), shot.frame_bytes(kMapBytes));
+    tell_errors(shot, result, options.run.verbose);
     if (options.run.report) write_report(*options.run.report, shot, result, kept);
     print_outcome(result, options.run, frames.size(), "the same command makes the rest");
     return result.failed() ? 1 : 0;

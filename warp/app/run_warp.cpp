@@ -6,6 +6,7 @@
 
 #include "noise/error.h"
 #include "warp/app/commands.h"
+#include "warp/app/explain.h"
 #include "warp/app/footage.h"
 #include "warp/app/outputs.h"
 #include "warp/app/pipeline.h"
@@ -133,9 +134,10 @@ class WarpRun {
                 "'{}' is {} x {}, but the shot is {} x {}; all frames of a shot must have one size", file.string(),
                 display.width, display.height, footage_.display.width, footage_.display.height));
         const auto* picture = std::get_if<Picture>(&item.plate);
-        const std::vector<DisplacementMap> maps =
-            shot_.maps(frame, offsets_, picture, picture != nullptr ? file : options_.input, plate_window(item.plate),
-                       item.record.remarks);
+        const Shot::Maps made = shot_.maps(frame, offsets_, picture, picture != nullptr ? file : options_.input,
+                                           plate_window(item.plate), item.record.remarks);
+        item.record.stated = made.error;
+        const std::vector<DisplacementMap>& maps = made.of_instants;
         const DisplacementMap& middle = maps[maps.size() / 2];
         if (options_.run.report) {
             const MapStatistics size = statistics(middle);
@@ -226,6 +228,11 @@ void try_companions(const Footage& footage, const Shot& shot, int frame) {
     }
 }
 
+/// Memory that a frame takes on its way, about [bytes].
+double bytes_of_frame(const WarpOptions& options, const Footage& footage, const Shot& shot) {
+    return shot.frame_bytes(kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
+}
+
 RunResult warp_frames(const WarpOptions& options, const Footage& footage, const Shot& shot, const Outputs& outputs,
                       const std::vector<int>& frames, int threads) {
     try_companions(footage, shot, frames.empty() ? 1 : frames.front());
@@ -233,8 +240,8 @@ RunResult warp_frames(const WarpOptions& options, const Footage& footage, const 
     const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); },
                         [&](FrameItem& item) { warp.work(item); }, [&](FrameItem& item) { warp.finish(item); },
                         footage_kind(options.output) == FootageKind::Movie};
-    const double bytes = shot.frame_bytes(kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
-    RunResult result = run_pipeline(stages, options.run, frames.size(), threads, bytes);
+    RunResult result =
+        run_pipeline(stages, options.run, frames.size(), threads, bytes_of_frame(options, footage, shot));
     if (!result.interrupted && (options.run.skip_bad_frames || !result.failed())) warp.close();
     return result;
 }
@@ -260,7 +267,7 @@ int run(const WarpOptions& options) {
     bool hole = false;
     std::vector<int> frames = choose_frames(options, footage, wanted, scene.time.first_frame, hole);
     Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
-              footage.fps ? std::optional(footage.fps->value()) : std::nullopt);
+              footage.fps ? std::optional(footage.fps->value()) : std::nullopt, options.run.states_errors());
     std::vector<NamedFiles> inputs = shot.companions();
     inputs.push_back({"the input", footage.files, footage.kind == FootageKind::Movie});
     outputs.check(frames, inputs);
@@ -270,7 +277,7 @@ int run(const WarpOptions& options) {
     if (!options.run.overwrite) {
         if (to_movie) {
             std::error_code ignored;
-            if (std::filesystem::exists(options.output, ignored)) {
+            if (std::filesystem::exists(options.output, ignored) && !options.run.explain) {
                 fmt::print(stderr, "eikonal: '{}' is already there and kept; --overwrite makes it anew\n",
                            options.output.string());
                 return hole ? 1 : 0;
@@ -279,10 +286,16 @@ int run(const WarpOptions& options) {
             kept = outputs.keep_finished(frames);
         }
     }
+    if (options.run.explain) {
+        explain(shot, {footage.display, frames, kept, limit.threads(), bytes_of_frame(options, footage, shot),
+                       options.filter, options.samples});
+        return 0;
+    }
     if (!options.run.skip_bad_frames)
         if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     RunResult result;
     if (kept == 0 || !frames.empty()) result = warp_frames(options, footage, shot, outputs, frames, limit.threads());
+    tell_errors(shot, result, options.run.verbose);
     if (options.run.report) write_report(*options.run.report, shot, result, kept);
     print_outcome(result, options.run, frames.size(),
                   to_movie ? "the movie was not written" : "the same command makes the rest");

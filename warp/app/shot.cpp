@@ -16,13 +16,41 @@ Scene load_scene(const SceneOptions& options) {
     return read_scene(file, options.settings, options.seed);
 }
 
+namespace {
+
+/// What the displacement is to be multiplied by.
+double gain_of(const Displacer& displacer, const StrengthOptions& strength, double far) {
+    if (!strength.rms) return strength.gain;
+    const double natural = displacer.expected_rms(far);
+    if (natural == 0 && *strength.rms > 0)
+        throw UserError(fmt::format(
+            "--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength (cn2)",
+            *strength.rms));
+    return natural > 0 ? strength.gain * *strength.rms / natural : 0;
+}
+
+/// One line on how the model was chosen.
+std::string describe(const ModelChoice& choice, double tolerance) {
+    std::string others;
+    for (const TriedModel& tried : choice.tried)
+        if (tried.model != choice.model)
+            others += fmt::format("{}{} {}", others.empty() ? "; " : ", ", name_of(tried.model),
+                                  tried.refusal.empty() ? fmt::format("{:.2g} px", tried.p95) : "does not apply");
+    return fmt::format("auto: model {}, off by {:.2g} px at most in 95 of 100 sampled pixels, {} the tolerance of {:g} px{}",
+                       name_of(choice.model), choice.p95, choice.within ? "within" : "beyond", tolerance, others);
+}
+
+}  // namespace
+
 Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments& depth, const StrengthOptions& strength,
-           const PixelWindow& display, double pixel_aspect, std::optional<double> fps)
+           const PixelWindow& display, double pixel_aspect, std::optional<double> fps, bool state_errors)
     : scene_(std::move(scene)),
       depth_(depth, scene_.plate),
       meeting_(depth.meeting.value_or(DepthMeeting::March)),
       display_(display),
-      fps_(scene_.time.fps.value_or(fps.value_or(kDefaultFps))) {
+      fps_(scene_.time.fps.value_or(fps.value_or(kDefaultFps))),
+      tolerance_(strength.tolerance),
+      state_errors_(state_errors || strength.tolerance || strength.model.automatic) {
     DisplacerSettings settings;
     settings.width = display.width;
     settings.height = display.height;
@@ -30,20 +58,20 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
     settings.fps = fps_;
     settings.fov = scene_options.fov;
     settings.far = depth_.far();
-    settings.model = strength.model;
+    settings.model = strength.model.model;
+    settings.sample_errors = state_errors_;
     settings.cancelled = interrupted;
     // --rms makes the weakest visible
     settings.negligible = strength.rms || strength.gain == 0 ? 0 : kNegligibleShift / std::abs(strength.gain);
-    displacer_ = std::make_unique<Displacer>(scene_, settings);
-    gain_ = strength.gain;
-    if (strength.rms) {
-        const double natural = displacer_->expected_rms(depth_.far());
-        if (natural == 0 && *strength.rms > 0)
-            throw UserError(fmt::format(
-                "--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength (cn2)",
-                *strength.rms));
-        gain_ = natural > 0 ? gain_ * *strength.rms / natural : 0;
+    const auto gain = [&](const Displacer& displacer) { return gain_of(displacer, strength, depth_.far()); };
+    if (strength.model.automatic || (strength.tolerance && !strength.model.model)) {
+        if (!tolerance_) tolerance_ = kDefaultTolerance;
+        choice_ = choose_model(scene_, settings, *tolerance_, depth_.constant().has_value(), gain);
+        displacer_ = std::move(choice_->displacer);
+    } else {
+        displacer_ = std::make_unique<Displacer>(scene_, settings);
     }
+    gain_ = gain(*displacer_);
     if (strength.mask) {
         const FileChannel split = split_channel(*strength.mask);
         if (split.file.empty())
@@ -60,6 +88,13 @@ double Shot::frame_bytes(double pixel_bytes) const {
 void Shot::tell(const std::vector<int>& frames, bool verbose) {
     warnings_ = displacer_->warnings();
     if (scene_.media.empty()) warnings_.push_back("the scene has no medium: nothing moves");
+    if (choice_ && !choice_->within)
+        warnings_.push_back(
+            fmt::format("--tolerance {:g}: no model stays within it; {}, the best, is off by up to {:.2g} px in 95 of 100 "
+                        "sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render follows "
+                        "the rays truly",
+                        *tolerance_, name_of(choice_->model), choice_->p95,
+                        displacer_->focusing_variance(depth_.far())));
     const auto [first, last] = std::minmax_element(frames.begin(), frames.end());
     if (scene_.camera.path && !frames.empty()) {
         const CameraPath path(scene_.camera, display_.width, display_.height);
@@ -80,6 +115,7 @@ std::vector<std::string> Shot::notes() const {
     lines.push_back(fmt::format("scene: {}", scene_.file.empty() ? "none" : scene_.file.filename().string()));
     lines.push_back("depth: " + depth_.description());
     for (const std::string& note : displacer_->notes()) lines.push_back(note);
+    if (choice_) lines.push_back(describe(*choice_, *tolerance_));
     lines.push_back(fmt::format("displacement: {:.3g} px rms expected at {:g} m, gain {:.4g}", expected_rms(),
                                 depth_.far(), gain_));
     if (const double focusing = displacer_->focusing_variance(depth_.far()); focusing > 0)
@@ -126,9 +162,9 @@ std::vector<NamedFiles> Shot::companions() const {
     return files;
 }
 
-std::vector<DisplacementMap> Shot::maps(int frame, const std::vector<double>& offsets, const Picture* input,
-                                        const std::filesystem::path& input_file, const PixelWindow& window,
-                                        std::vector<Remark>& remarks) const {
+Shot::Maps Shot::maps(int frame, const std::vector<double>& offsets, const Picture* input,
+                      const std::filesystem::path& input_file, const PixelWindow& window,
+                      std::vector<Remark>& remarks) const {
     std::optional<DepthPlane> plane;
     double nearest = depth_.far(), farthest = depth_.far();
     DepthSource source = depth_.constant().value_or(0);
@@ -142,16 +178,20 @@ std::vector<DisplacementMap> Shot::maps(int frame, const std::vector<double>& of
     }
     std::vector<float> mask;
     if (mask_) mask = read_matte(mask_->at(frame), mask_channel_, window, display_, &remarks);
-    std::vector<DisplacementMap> result;
-    for (const double offset : offsets) {
+    Maps result;
+    for (std::size_t k = 0; k < offsets.size(); ++k) {
         DisplacementMap map{window, std::vector<float>(2 * window.area())};
-        if (gain_ != 0)
-            displacer_->at(frame + offset, nearest, farthest, gain_).map(window, source, meeting_, map.uv.data());
+        if (gain_ != 0) {
+            const Displacer::Instant instant = displacer_->at(frame + offsets[k], nearest, farthest, gain_);
+            instant.map(window, source, meeting_, map.uv.data());
+            if (state_errors_ && k == offsets.size() / 2)
+                result.error = instant.stated_error(window, source, meeting_, map.uv.data());
+        }
         for (std::size_t i = 0; i < mask.size(); ++i) {
             map.uv[2 * i] *= mask[i];
             map.uv[2 * i + 1] *= mask[i];
         }
-        result.push_back(std::move(map));
+        result.of_instants.push_back(std::move(map));
     }
     return result;
 }

@@ -10,7 +10,7 @@
 #include "warp/app/options.h"
 #include "warp/app/outputs.h"
 #include "warp/app/warp_plate.h"
-#include "warp/displace/displacer.h"
+#include "warp/displace/choose_model.h"
 
 namespace eikonal {
 
@@ -19,9 +19,10 @@ Scene load_scene(const SceneOptions& options);
 
 class Shot {
   public:
-    /// display, pixel_aspect: of the footage. fps: the footage's own, which the scene's overrides.
+    /// display, pixel_aspect: of the footage. fps: the footage's own, which the scene's overrides. state_errors: maps()
+    /// measures what it makes, which a tolerance asks for, too.
     Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments& depth, const StrengthOptions& strength,
-         const PixelWindow& display, double pixel_aspect, std::optional<double> fps);
+         const PixelWindow& display, double pixel_aspect, std::optional<double> fps, bool state_errors);
 
     const Scene& scene() const { return scene_; }
     const DepthInput& depth() const { return depth_; }
@@ -30,6 +31,10 @@ class Shot {
     double fps() const { return fps_; }
     /// Memory that a frame takes on its way, about [bytes]. pixel_bytes: of the caller's own, a pixel of the display.
     double frame_bytes(double pixel_bytes) const;
+    DepthMeeting meeting() const { return meeting_; }
+    std::optional<double> tolerance() const { return tolerance_; }
+    /// How --model auto has chosen; null otherwise.
+    const ModelChoice* choice() const { return choice_ ? &*choice_ : nullptr; }
     /// Expected rms of |d| at far(), gain included [px]. Worked out at each call.
     double expected_rms() const { return displacer_->expected_rms(depth_.far()) * gain_; }
     /// Lines on scene, depth, media and strength.
@@ -39,9 +44,13 @@ class Shot {
     /// The warnings that tell() has told.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
+    struct Maps {
+        std::vector<DisplacementMap> of_instants;
+        std::optional<StatedError> error;  ///< of the middle instant, before the mask
+    };
     /// Maps of the instants at frame + offsets, on `window`, masked. `input`: the frame's picture or null. What is odd
     /// about the depth map and the matte is added to `remarks`. FrameError: the run is interrupted, among others.
-    std::vector<DisplacementMap> maps(int frame, const std::vector<double>& offsets, const Picture* input,
+    Maps maps(int frame, const std::vector<double>& offsets, const Picture* input,
                                       const std::filesystem::path& input_file, const PixelWindow& window,
                                       std::vector<Remark>& remarks) const;
 
@@ -59,6 +68,9 @@ class Shot {
     DepthMeeting meeting_;
     PixelWindow display_;
     double fps_;
+    std::optional<double> tolerance_;
+    bool state_errors_;
+    std::optional<ModelChoice> choice_;
     std::unique_ptr<Displacer> displacer_;
     double gain_ = 1;
     std::optional<FilePattern> mask_;

@@ -1,0 +1,115 @@
+// --model auto, --tolerance, and the error that every run states of its maps.
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/program_run.h"
+
+namespace program_test {
+namespace {
+
+class ModelTest : public Program {
+  protected:
+    ModelTest() { air(); }
+    nlohmann::json report(Words more, Ended* how = nullptr) const {
+        Words words{"map", "--scene", "air.toml", "-o", "m.####.exr", "--overwrite", "--report", "r.json"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Ended ended = run(words);
+        EXPECT_EQ(ended.status, 0) << ended.err;
+        if (how != nullptr) *how = ended;
+        return nlohmann::json::parse(bytes("r.json"));
+    }
+    static double p95(const nlohmann::json& report) { return report["frames"][0]["stated_error_px"]["p95"]; }
+};
+
+TEST_F(ModelTest, EveryModelStatesItsError) {
+    double last = 1e9;
+    for (const char* model : {"table", "first-order", "second-order"}) {
+        const nlohmann::json r = report({"--model", model});
+        const auto& stated = r["frames"][0]["stated_error_px"];
+        EXPECT_GE(stated["samples"], 64);
+        EXPECT_LE(stated["p50"], stated["p95"]);
+        EXPECT_LE(stated["p95"], stated["max"]);
+        EXPECT_LT(p95(r), last) << model;
+        last = p95(r);
+        EXPECT_FALSE(r.contains("model_choice"));
+    }
+}
+
+TEST_F(ModelTest, AutoTakesTheCheapestWithinTheTolerance) {
+    Ended how;
+    const nlohmann::json loose = report({"--model", "auto", "--tolerance", "100"}, &how);
+    silent(how);
+    EXPECT_EQ(loose["model_choice"]["model"], "table");
+    EXPECT_EQ(loose["tolerance_px"], 100);
+    // a tolerance alone asks for a choice as well
+    const double coarse = loose["model_choice"]["p95_px"];
+    const nlohmann::json fine = report({"--tolerance", std::to_string(coarse / 20)});
+    EXPECT_NE(fine["model_choice"]["model"], "table");
+    EXPECT_LE(double{fine["model_choice"]["p95_px"]}, coarse / 20);
+    EXPECT_EQ(fine["model_choice"]["tried"][0]["model"], "table");
+    EXPECT_EQ(report({"--model", "auto"})["tolerance_px"], 0.1);
+}
+
+TEST_F(ModelTest, VerboseTellsChoiceAndError) {
+    const Ended ended =
+        run({"map", "--scene", "air.toml", "-o", "m.exr", "--model", "auto", "--tolerance", "100", "--verbose"});
+    EXPECT_NE(ended.err.find("auto: model table"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("stated error: 95 of 100"), std::string::npos) << ended.err;
+}
+
+// Any chunk of a shot makes the same choice and the same bytes.
+TEST_F(ModelTest, ChunksAgreeOnTheChoice) {
+    const Words choice{"--tolerance", "0.02"};
+    const nlohmann::json all = report({"--tolerance", "0.02", "--frames", "1-6"});
+    const std::string fifth = bytes("m.0005.exr");
+    for (const char* threads : {"1", "2"}) {
+        const nlohmann::json one = report({"--tolerance", "0.02", "--frames", "5", "--threads", threads});
+        EXPECT_EQ(one["model_choice"], all["model_choice"]);
+        EXPECT_EQ(bytes("m.0005.exr"), fifth);
+        EXPECT_EQ(one["frames"][0]["stated_error_px"], all["frames"][4]["stated_error_px"]);
+    }
+}
+
+TEST_F(ModelTest, SaysThatNoModelSuffices) {
+    Ended how;
+    const nlohmann::json r = report({"--tolerance", "1e-12", "--gain", "50"}, &how);
+    EXPECT_EQ(r["model_choice"]["within_tolerance"], false);
+    ASSERT_GE(how.lines().size(), 1U);
+    EXPECT_NE(how.err.find("--tolerance 1e-12: no model stays within it"), std::string::npos) << how.err;
+    EXPECT_NE(how.err.find("eikonal-trace render"), std::string::npos);
+}
+
+// A model that was asked for is kept, and its frames beyond the tolerance are told.
+TEST_F(ModelTest, WarnsOfANamedModelBeyondTheTolerance) {
+    Ended how;
+    const nlohmann::json r = report({"--model", "table", "--tolerance", "1e-9"}, &how);
+    EXPECT_EQ(r["models"][0], "table");
+    EXPECT_NE(how.err.find("--tolerance 1e-09: 1 of 1 frames go beyond it, frame 1 by most"), std::string::npos)
+        << how.err;
+}
+
+TEST_F(ModelTest, ExplainTellsAndWritesNothing) {
+    plate("in.png");
+    const Words before = names();
+    const Ended ended = run({"warp", "in.png", "-o", "out.png", "--scene", "air.toml", "--explain"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    for (const char* line : {"picture: 64 x 48", "frames 1 to make", "medium.0: model first-order", "px rms expected at 30 m",
+                             "error: 95 of 100 of 64", "time: about", "memory: about"})
+        EXPECT_NE(ended.out.find(line), std::string::npos) << line << " in " << ended.out;
+    EXPECT_EQ(names(), before);
+    const Ended nothing =
+        run({"map", "-o", "m.exr", "--scene", "air.toml", "--set", "medium.0.cn2=0", "--explain"});
+    EXPECT_EQ(nothing.status, 0) << nothing.err;
+    EXPECT_NE(nothing.out.find("medium.0: left out, its strength is zero"), std::string::npos) << nothing.out;
+    refused(run({"map", "-o", "m.exr", "--scene", "none.toml", "--explain"}), 2, {"none.toml"});
+}
+
+TEST_F(ModelTest, RefusesImpossibleTolerances) {
+    for (const char* wrong : {"0", "-1", "nan", "much"})
+        refused(run({"map", "--scene", "air.toml", "-o", "m.exr", "--tolerance", wrong}), 2, {"--tolerance", wrong});
+}
+
+}  // namespace
+}  // namespace program_test
