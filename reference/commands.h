@@ -7,6 +7,7 @@ namespace eikonal::reference {
 
 int run(const RenderOptions& options);
 int run(const PathOptions& options);
+int run(const CompareOptions& options);
 int run(const Information& information);
 
 }  // namespace eikonal::reference

@@ -13,15 +13,9 @@
 namespace eikonal::reference {
 namespace {
 
-constexpr std::pair<std::string_view, Integrator> kIntegrators[] = {
-    {"adaptive", Integrator::Adaptive},      {"rk4", Integrator::Rk4},
-    {"leapfrog", Integrator::Leapfrog},      {"euler", Integrator::Euler},
-    {"layers", Integrator::Layers},          {"mirror", Integrator::Mirror},
-    {"first-order", Integrator::FirstOrder}, {"second-order", Integrator::SecondOrder}};
-
 std::vector<std::string_view> integrator_names() {
     std::vector<std::string_view> names;
-    for (const auto& [name, value] : kIntegrators) names.push_back(name);
+    for (const auto& [name, value] : kIntegratorNames) names.push_back(name);
     return names;
 }
 
@@ -54,7 +48,7 @@ void add_integrator(CLI::App& command, RaySettings& rays) {
         .add_option_function<std::string>(
             "--integrator",
             [&integrator](const std::string& text) {
-                for (const auto& [name, value] : kIntegrators)
+                for (const auto& [name, value] : kIntegratorNames)
                     if (name == text) {
                         integrator = value;
                         return;
@@ -75,6 +69,24 @@ void add_integrator(CLI::App& command, RaySettings& rays) {
         ->check(CLI::Range(10, 1000000000))
         ->capture_default_str()
         ->type_name("N");
+}
+
+/// Exactness of a picture.
+void add_quality(CLI::App& command, RaySettings& rays, int& samples) {
+    add_integrator(command, rays);
+    command.add_option("--tolerance", rays.tolerance_px, "largest error of the displacement [px]")
+        ->check(within(1e-9, 1e3))
+        ->capture_default_str()
+        ->type_name("PX");
+    command.add_option("--samples", samples, "samples a pixel for the colour; powers of two spread best")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str()
+        ->type_name("N");
+}
+
+void add_frames(CLI::App& command, std::string& frames) {
+    command.add_option("--frames", frames, "frames, e.g. 1-24, 1-9x2, 3,7 (default: the scene's first)")
+        ->type_name("LIST");
 }
 
 /// X,Y,Z
@@ -98,15 +110,7 @@ void add_render(CLI::App& command, RenderOptions& o) {
         ->type_name("FILE");
     command.add_flag("--straight", o.render.straight,
                      "straight rays: the undistorted plate and the depth that eikonal warp takes");
-    add_integrator(command, o.render.rays);
-    command.add_option("--tolerance", o.render.rays.tolerance_px, "largest error of the displacement [px]")
-        ->check(within(1e-9, 1e3))
-        ->capture_default_str()
-        ->type_name("PX");
-    command.add_option("--samples", o.render.samples, "samples a pixel for the colour; powers of two spread best")
-        ->check(CLI::Range(1, 1 << 20))
-        ->capture_default_str()
-        ->type_name("N");
+    add_quality(command, o.render.rays, o.render.samples);
     command.add_flag(
         "--magnification", o.render.magnification,
         "channel magnification, from the spread of each pixel's bundle of rays, and the count of folded pixels");
@@ -115,8 +119,10 @@ void add_render(CLI::App& command, RenderOptions& o) {
                     "follow N x N sun rays through the air onto every quad: caustics and shadows of hot air")
         ->check(CLI::Range(2 * kRaysPerTexel, kMostLightRays))
         ->type_name("N");
-    command.add_option("--frames", o.frames, "frames, e.g. 1-24, 1-9x2, 3,7 (default: the scene's first)")
-        ->type_name("LIST");
+    add_frames(command, o.frames);
+    command.add_flag("--explain", o.explain,
+                     "write nothing, but say what the frames need and will be: media, steps, displacement, error, time, "
+                     "memory");
     command.add_flag("--compact", o.compact,
                      fmt::format("small files: colour slightly lossy (DWAA), Z to {:.0e}", kCompactDepthError));
     command.add_flag("--overwrite", o.overwrite, "render frames again whose files exist");
@@ -150,6 +156,22 @@ void add_path(CLI::App& command, PathOptions& o) {
     command.add_option("--frame", o.frame, "frame (default: the scene's first)")->type_name("F");
 }
 
+void add_compare(CLI::App& command, CompareOptions& o) {
+    add_common(command, o.common);
+    command.add_option("-o,--output", o.output, "folder for tables, pictures, plot and index.html; made if need be")
+        ->required()
+        ->type_name("FOLDER");
+    command
+        .add_option("--models", o.compare.models,
+                    "only these models, e.g. screens,first-order, or default (default: all that suit the scene)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("LIST");
+    add_quality(command, o.compare.rays, o.compare.samples);
+    add_frames(command, o.frames);
+    command.add_flag("--overwrite", o.overwrite, "compare again although the folder holds an index.html");
+}
+
 void check(RenderOptions& o) {
     if (o.output.extension() != ".exr")
         throw UserError(fmt::format(
@@ -172,18 +194,13 @@ void check(PathOptions& o) {
 
 }  // namespace
 
-std::string_view name_of(Integrator integrator) {
-    for (const auto& [name, value] : kIntegrators)
-        if (value == integrator) return name;
-    return "";
-}
-
 Command parse_options(int argc, const char* const* argv) {
     CLI::App app{
         "Traces the scenes that eikonal distorts along true bent rays: the ground truth for its warp.\n\n"
         "  eikonal-trace render scene.toml -o truth.exr\n"
         "  eikonal-trace render scene.toml -o plate.####.exr --frames 1-24 --straight\n"
-        "  eikonal-trace path scene.toml --origin 0,1.5,0 --direction 0,-0.01,-1 --length 200 -o ray.csv",
+        "  eikonal-trace path scene.toml --origin 0,1.5,0 --direction 0,-0.01,-1 --length 200 -o ray.csv\n"
+        "  eikonal-trace compare scene.toml -o comparison",
         "eikonal-trace"};
     app.require_subcommand(1);
     app.set_version_flag("--version", "eikonal-trace " EIKONAL_VERSION);
@@ -192,11 +209,15 @@ Command parse_options(int argc, const char* const* argv) {
         "more.");
     RenderOptions render;
     PathOptions path;
+    CompareOptions compare;
     CLI::App* render_command =
         app.add_subcommand("render", "render a scene with bent rays: colour, depth, displacement");
     add_render(*render_command, render);
     CLI::App* path_command = app.add_subcommand("path", "write one ray: columns u,x,y,z,px,py,pz");
     add_path(*path_command, path);
+    CLI::App* compare_command =
+        app.add_subcommand("compare", "every model of the warp against bent rays: errors, time, pictures, a page");
+    add_compare(*compare_command, compare);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
@@ -214,6 +235,7 @@ Command parse_options(int argc, const char* const* argv) {
         check(render);
         return render;
     }
+    if (app.got_subcommand(compare_command)) return compare;
     check(path);
     return path;
 }

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "reference/comparison.h"
 #include "reference/render.h"
 
 namespace eikonal::reference {
@@ -24,7 +25,7 @@ struct RenderOptions {
     std::filesystem::path output;
     RenderSettings render;
     std::string frames;  ///< empty: the scene's first
-    bool compact = false, overwrite = false, verbose = false;
+    bool compact = false, overwrite = false, verbose = false, explain = false;
 };
 
 struct PathOptions {
@@ -37,16 +38,22 @@ struct PathOptions {
     std::optional<int> frame;
 };
 
+struct CompareOptions {
+    CommonOptions common;
+    std::filesystem::path output;  ///< a folder
+    CompareSettings compare;
+    std::string frames;  ///< empty: the scene's first
+    bool overwrite = false;
+};
+
 /// What is printed and no more: help, the version.
 struct Information {
     std::string text;
 };
 
-using Command = std::variant<RenderOptions, PathOptions, Information>;
+using Command = std::variant<RenderOptions, PathOptions, CompareOptions, Information>;
 
 /// UserError: one line that names the option, the value, what is allowed.
 Command parse_options(int argc, const char* const* argv);
-
-std::string_view name_of(Integrator integrator);
 
 }  // namespace eikonal::reference

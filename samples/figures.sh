@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of the paper again, and a mirage, into out/: samples/figures.sh 2|5|6|7|mirage. Needs a build
-# (.ci/setup), in build/ or where BUILD says.
+# Makes the pictures of the paper again, a mirage, the truth beside them and a shadowgraph, into out/:
+# samples/figures.sh 2|5|6|7|mirage|truth|shadowgraph. Needs a build (.ci/setup), in build/ or where BUILD says.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p out
@@ -9,6 +9,30 @@ warp() { "$build/warp/eikonal" warp "$@" --overwrite --progress none; }
 trace() { "$build/reference/eikonal-trace" "$@" 2>/dev/null; }
 palette() { ffmpeg -v error -y -i "$1" -vf 'split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none' "$2" && rm "$1"; }
 display=(--ch R,G,B --colorconvert linear sRGB -d uint8)
+
+
+# rms and maximum over pictures of a squared shift, of oiiotool's statistics
+pixels() {
+    oiiotool "$@" | awk '/Stats Max/ { if ($3 > max) max = $3 } /Stats Avg/ { sum += $3; n++ }
+        END { printf "%.3f px rms, %.2f at most", sqrt(sum / n), sqrt(max) }'
+}
+# both NAME FRAMES SAMPLES MOST: a scene by the first order and by true rays; `first`, `truth` and `apart`, by how much
+# they differ (black 0, brightest MOST pixels), are words for oiiotool's mosaic
+both() {
+    local name=$1 shift=(--ch u,v) square=(--dup --mul --chsum) moved=() off=() frame a b
+    first=() truth=() apart=()
+    for frame in ${2//,/ }; do
+        a=out/$name-first.$frame.exr b=out/$name-truth.$frame.exr
+        trace render "samples/$name.toml" -o "$a" --frames "$frame" --samples "$3" --overwrite --integrator first-order
+        trace render "samples/$name.toml" -o "$b" --frames "$frame" --samples "$3" --overwrite
+        first+=("$a" "${display[@]}")
+        truth+=("$b" "${display[@]}")
+        moved+=("$b" "${shift[@]}" "${square[@]}" --printstats)
+        off+=("$a" "${shift[@]}" "$b" "${shift[@]}" --sub "${square[@]}" --printstats)
+        apart+=("$a" "${shift[@]}" "$b" "${shift[@]}" --sub "${square[@]}" --powc 0.5 --divc "$4" --colormap inferno)
+    done
+    echo "$name: displaced by $(pixels "${moved[@]}"); first order is off by $(pixels "${off[@]}")"
+}
 
 case "${1:-}" in
 2) # two fans of rays over a heated surface: large and small dropoff
@@ -59,19 +83,38 @@ case "${1:-}" in
     palette out/fig7.all.png out/fig7.png
     echo "out/fig7.png: the plates from three viewpoints, and the same through hot air"
     ;;
-mirage) # the road, the same through its hot air, and as rays really go
+mirage) # the road, and the same through its hot air
     scene=samples/mirage.toml
     trace render $scene --straight -o out/mirage-plate.exr --samples 128 --overwrite
     warp out/mirage-plate.exr -o out/mirage-warp.exr --scene $scene --depth :Z
-    trace render $scene -o out/mirage-truth.exr --samples 4 --set medium.1.cn2=0 --overwrite
     oiiotool out/mirage-plate.exr "${display[@]}" out/mirage-warp.exr "${display[@]}" --mosaic:pad=4 1x2 -o out/mirage.all.png
     palette out/mirage.all.png out/mirage.png
-    oiiotool out/mirage-truth.exr "${display[@]}" -o out/mirage-truth.all.png
+    echo "out/mirage.png: the road before and after"
+    ;;
+truth) # the same air by the first order and as rays really go, in some minutes
+    for figure in 5 6; do
+        both fig$figure 49 8 0.5
+        oiiotool "${first[@]}" "${truth[@]}" "${apart[@]}" --mosaic:pad=4 3x1 -d uint8 -o out/fig$figure-truth.all.png
+        palette out/fig$figure-truth.all.png out/fig$figure-truth.png
+    done
+    both fig7 1,25,49 4 3
+    oiiotool "${first[@]}" "${truth[@]}" "${apart[@]}" --mosaic:pad=4 3x3 -d uint8 -o out/fig7-truth.all.png
+    palette out/fig7-truth.all.png out/fig7-truth.png
+    echo "out/fig5-truth.png, fig6-truth.png, fig7-truth.png: first order, truth, by how much they differ"
+    for rays in first-order adaptive; do
+        trace render samples/mirage.toml -o out/mirage-$rays.exr --set medium.1= --samples 8 --integrator $rays --overwrite
+    done
+    oiiotool out/mirage-{first-order,adaptive}.exr --mosaic:pad=4 2x1 "${display[@]}" -o out/mirage-truth.all.png
     palette out/mirage-truth.all.png out/mirage-truth.png
-    echo "out/mirage.png: the road before and after; out/mirage-truth.png: the mirage by bent rays, without shimmer"
+    echo "out/mirage-truth.png: the mirage by the first order and as rays really go, without shimmer"
+    ;;
+shadowgraph) # sunlight bent by a plume, onto a wall
+    trace render samples/shadowgraph.toml -o out/shadowgraph.exr --light-rays 1024 --tolerance 0.1 --samples 4 --overwrite
+    oiiotool out/shadowgraph.exr "${display[@]}" --compression jpeg:90 -o out/shadowgraph.jpg
+    echo "out/shadowgraph.jpg: the shadow of hot air"
     ;;
 *)
-    echo "usage: samples/figures.sh 2|5|6|7|mirage" >&2
+    echo "usage: samples/figures.sh 2|5|6|7|mirage|truth|shadowgraph" >&2
     exit 2
     ;;
 esac

@@ -1,0 +1,54 @@
+/// `eikonal-trace compare`: the warp against the tracer, on frames of a scene.
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "noise/error.h"
+#include "reference/commands.h"
+#include "reference/comparison_report.h"
+#include "reference/comparison_table.h"
+#include "reference/tile_progress.h"
+#include "warp/image/sequence.h"
+
+namespace eikonal::reference {
+namespace {
+
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error || !std::filesystem::is_directory(folder, error))
+        throw UserError(fmt::format("--output {}: this folder cannot be made{}{}", folder.string(), error ? ": " : "",
+                                    error ? error.message() : ""));
+}
+
+}  // namespace
+
+int run(const CompareOptions& o) {
+    const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
+    const std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
+    const std::filesystem::path page = o.output / "index.html";
+    std::error_code ignored;
+    if (!o.overwrite && std::filesystem::exists(page, ignored)) {
+        fmt::print(stderr, "kept {} (--overwrite compares again)\n", page.string());
+        return 0;
+    }
+    Comparer comparer(scene, o.compare);
+    make_folder(o.output);
+    std::vector<PagePicture> pictures;
+    for (const int frame : frames) {
+        try {
+            TileProgress progress(fmt::format("frame {}", frame), comparer.tile_count());
+            const Comparer::Frame& compared = comparer.add(frame, [&] { progress.tile_done(); });
+            std::vector<PagePicture> written = write_pictures(o.output, comparer.result(), compared);
+            if (pictures.empty()) pictures = std::move(written);
+        } catch (const FrameError& error) {
+            throw FrameError(fmt::format("frame {}: {}", frame, error.what()));
+        }
+    }
+    const Comparison result = comparer.result();
+    write_report(o.output, result, pictures);
+    fmt::print("{}\nwrote {}\n", table_text(result), page.string());
+    return 0;
+}
+
+}  // namespace eikonal::reference
