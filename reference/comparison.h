@@ -34,8 +34,11 @@ inline constexpr double kTimingSeconds = 2;
 /// The rows that are no models.
 inline constexpr std::string_view kNoModel = "none", kDefaultModel = "default";
 
+/// Of the rays that the warp is judged by [px]; much less than any model's error.
+inline constexpr double kTruthTolerance = 1e-3;
+
 struct CompareSettings {
-    RaySettings rays;
+    RaySettings rays{.tolerance_px = kTruthTolerance};
     int samples = 16;                 ///< of colour a pixel
     std::vector<std::string> models;  ///< rows wanted besides `none`; empty: all
 };

@@ -258,6 +258,28 @@ TEST(Comparer, WithoutAirNothingDiffers) {
     EXPECT_GT(c.tracer_seconds, 0);
 }
 
+// Strong air: what second order follows is what the tracer follows, and what the warp says of itself is true.
+TEST(Comparer, SecondOrderIsTheTruthAndStatedErrorsHold) {
+    Scene scene = wall();
+    scene.optics.exaggeration = 300;
+    BlobsSpec blobs;
+    blobs.blobs = {{{0.2, 1.6, -5}, 0.4, 900}, {{-0.3, 1.4, -6}, 0.3, 700}};
+    scene.media = {blobs};
+    Comparer comparer(scene, one_sample());
+    comparer.add(1);
+    const Comparison c = comparer.result();
+    ASSERT_GT(c.rms, 0.1);
+    for (const ModelResult& m : c.models) {
+        if (m.name == "second-order") {
+            EXPECT_LT(m.all.p95, 3e-3 * c.rms);
+        } else if (m.name == "first-order") {
+            EXPECT_GT(m.all.p95, 0.01 * c.rms);
+            EXPECT_LT(*m.stated_p95, 2 * m.all.p95);
+            EXPECT_GT(*m.stated_p95, 0.5 * m.all.p95);
+        }
+    }
+}
+
 TEST(Comparer, ABlobIsFollowedByTheDefaultAndNotByThePlate) {
     Scene scene = wall();
     scene.optics.exaggeration = 30;

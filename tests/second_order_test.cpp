@@ -131,7 +131,7 @@ TEST(SecondOrder, StepsAreAsAccurateAsStated) {
 }
 
 TEST(StatedError, FindsAnErrorThatIsPutIntoAMap) {
-    const Scene scene = blob_scene(50);
+    const Scene scene = blob_scene(20);
     DisplacerSettings settings = settings_for(40);
     const Displacer displacer(scene, settings);
     const Displacer::Instant instant = displacer.at(1, 40, 40);
@@ -171,7 +171,7 @@ TEST(StatedError, MeetsDepthAsTheMapDoes) {
     for (int y = 0; y < kHeight; ++y)
         for (int x = 80; x < 100; ++x) metres[static_cast<std::size_t>(y * kWidth + x)] = 12;
     const DepthPlane plane(kWindow, metres);
-    const Displacer displacer(blob_scene(200), settings_for(40));
+    const Displacer displacer(blob_scene(100), settings_for(40));
     const Displacer::Instant instant = displacer.at(1, 12, 40);
     std::vector<float> uv(2 * kWindow.area());
     for (const DepthMeeting meeting : {DepthMeeting::March, DepthMeeting::FixedPoint, DepthMeeting::Own}) {

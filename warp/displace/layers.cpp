@@ -39,12 +39,12 @@ constexpr double kPartOfNoiseCell = 0.75;
 /// Focusing variance from which folding rays are warned of.
 constexpr double kFolding = 0.5;
 
-/// Least padding that keeps a first-order spline's slope to kFirstOrderSplineError, if the lattice affords it: of the
-/// scene alone, so that every machine makes the same picture.
-int first_order_padding(const LatticeField& field) {
+/// Least padding that keeps a spline's slope to an error relative to its rms, if the lattice affords it: of the scene
+/// alone, so that every machine makes the same picture.
+int spline_padding(const LatticeField& field, double allowed) {
     int padding = 1;
     for (const int p : {2, 3, 4}) {
-        if (snapshot_slope_error(field, padding) <= kFirstOrderSplineError) break;
+        if (snapshot_slope_error(field, padding) <= allowed) break;
         const auto finer = static_cast<std::size_t>(p);
         if (field.geometry().spatial_samples() * finer * finer * finer > kMostPadded) break;
         padding = p;
@@ -286,10 +286,11 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
                     geometry.period[0], geometry.period[1], geometry.period[2], geometry.period[3]);
     MediumLayer layer{i, model, LatticeField(spec, geometry), cell, 0};
     const auto& field = std::get<LatticeField>(layer.field);
-    if (stepped || settings_.sample_errors) layer.ray_padding = first_order_padding(field);
+    const double allowed = second_order() ? kSecondOrderSplineError : kFirstOrderSplineError;
+    if (stepped || settings_.sample_errors) layer.ray_padding = spline_padding(field, allowed);
     if (stepped) {
         layer.padding = layer.ray_padding;
-        if (const double error = snapshot_slope_error(field, layer.padding); error > kFirstOrderSplineError)
+        if (const double error = snapshot_slope_error(field, layer.padding); error > allowed)
             notes_.push_back(fmt::format(
                 "medium.{}: too large a lattice for a finer spline, whose force is off by {:.2g} of its rms", i,
                 error));

@@ -15,7 +15,9 @@ constexpr double kHair = 1e-9;
 class BentRay {
   public:
     BentRay(const SecondOrderInstant& model, const StraightRay& ray)
-        : field_(model.field), longest_(model.step), ray_(ray) {}
+        : field_(model.field), longest_(model.step), ray_(ray), launch_(model.field.speed(ray.origin)) {
+        ended_ = !(launch_ > 0);
+    }
 
     /// Follows the ray to axial depth `target`, and tells `visit` the end of every step.
     template <class Visit>
@@ -31,7 +33,7 @@ class BentRay {
                 z_ += clear;
             } else {
                 const double edge = field_.way_to_edge(x, direction) / length;
-                const double safe = longest_ * field_.longest_step(x, direction) / length;
+                const double safe = longest_step(x, direction) / length;
                 const double hair = kHair * target;
                 const bool over = edge <= 2 * hair;
                 const double h = over ? std::min(left, edge + hair) : std::min({left, safe, edge - hair});
@@ -65,6 +67,13 @@ class BentRay {
     }
 
   private:
+    /// A part of the field's own, or that and what it says where that ends: nothing small is jumped over.
+    double longest_step(const dvec3& x, const dvec3& direction) const {
+        const double first = field_.longest_step(x, direction);
+        if (longest_ <= 1 || !std::isfinite(first)) return longest_ * first;
+        return first + (longest_ - 1) * field_.longest_step(x + first * direction, direction);
+    }
+
     void drift(double h) { x1_ += h * slope_; }
 
     dvec3 acceleration(double z, const dvec3& x1, const dvec3& slope) {
@@ -74,7 +83,7 @@ class BentRay {
             ended_ = true;
             return {0, 0, 0};
         }
-        return (ray_.length * ray_.length / (speed * speed)) * force;
+        return (ray_.length * ray_.length / (launch_ * launch_)) * force;
     }
 
     /// Nyström's method: the force at the start, twice the middle in one, the end.
@@ -90,6 +99,7 @@ class BentRay {
     const FieldInstant& field_;
     double longest_;
     StraightRay ray_;
+    double launch_;  ///< |dx/du| at the camera, hence metres of ray a unit of u where the straight ray is
     double z_ = 0;
     dvec3 x1_{0, 0, 0}, slope_{0, 0, 0};
     int steps_ = 0;

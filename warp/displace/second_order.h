@@ -1,7 +1,8 @@
 /// Model `second-order`: the ray equation itself, along every node's ray through the sum of all media but surfaces.
 ///
-///     x1'' = L² F(P(z) + x1, d + x1')/|dx/du|²,   P(z) = origin + z d the straight ray by axial depth
+///     x1'' = L² F(P(z) + x1, d + x1')/|dx/du|₀²,   P(z) = origin + z d the straight ray by axial depth
 ///
+/// (|dx/du|₀ at the camera: u is L/|dx/du|₀ a metre of depth, all along the ray)
 /// to which Eq. 7 is the first approximation, F at P alone; second order adds ∫(u - w)(x1·∇)F dw (PHYSICS 6). Taking F
 /// where the bent ray is holds that term and those of higher order. Steps of Nyström's fourth-order method, at most
 /// `step` times as long as the field says (FieldInstant::longest_step) and ending where it jumps. The shift is
@@ -31,6 +32,8 @@ inline constexpr double kNoiseStep = 0.5;
 inline constexpr double kFineStep = 0.5;
 /// Where its blobs end [σ]: e^{-16} of each is left out.
 inline constexpr double kRayBlobReach = 4;
+/// Rms error of a lattice's force that its spline is made finer for, relative to the rms, where memory permits.
+inline constexpr double kSecondOrderSplineError = 0.003;
 /// Rms error of shifts with kStep against kFineStep, relative to the rms shift. (tests/second_order_test.cpp)
 inline constexpr double kSecondOrderError = 2e-3;
 
