@@ -16,54 +16,45 @@
 namespace eikonal {
 namespace {
 
-/// What a key may hold.
-struct Allowed {
-    double least, most;
-    const char* unit;
-};
-constexpr Allowed kPlace{-1e12, 1e12, "m"}, kSigma{1e-6, 1e9, "m"}, kTemperature{1, 1e9, "K"}, kRate{0, 1e9, "1/s"},
-    kCooling{0, 1e300, "1/s"}, kGrowth{0, 1e12, "m²/s"}, kLifetime{1e-6, 1e9, "s"}, kSpeed{0, 1e6, "m/s"},
-    kRise{-1e6, 1e6, "m/s"}, kOuterScale{1e-6, 1e9, "m"};
-
 constexpr double kCalm = 1e-12;  ///< rms [m/s] that moves nothing by a millimetre within kLatestTime
 constexpr int kIntervalsAtOnce = 16;
 constexpr std::size_t kMostCarriedKept = 16;
 constexpr std::size_t kBlobsAtOnce = 32;  ///< least that a thread is given
 
-void require(const std::string& key, double value, const Allowed& allowed) {
+void require(const std::string& key, double value, const BlobKeyRange& allowed) {
     if (!(value >= allowed.least && value <= allowed.most))
         throw UserError(fmt::format("{} = {:g} {} is out of range; allowed is {:g} … {:g} {}", key, value, allowed.unit,
                                     allowed.least, allowed.most, allowed.unit));
 }
 
-void require(const std::string& key, const dvec3& value, const Allowed& allowed) {
+void require(const std::string& key, const dvec3& value, const BlobKeyRange& allowed) {
     for (int axis = 0; axis < 3; ++axis) require(fmt::format("{}.{}", key, axis), value[axis], allowed);
 }
 
 void require_all(const BlobsSpec& spec, std::string_view name) {
     for (std::size_t j = 0; j < spec.blobs.size(); ++j) {
         const auto key = [&](const char* last) { return fmt::format("{}.blob.{}.{}", name, j, last); };
-        require(key("center"), spec.blobs[j].center, kPlace);
-        require(key("sigma"), spec.blobs[j].sigma, kSigma);
-        require(key("temperature"), spec.blobs[j].temperature, kTemperature);
+        require(key("center"), spec.blobs[j].center, kBlobPlace);
+        require(key("sigma"), spec.blobs[j].sigma, kBlobSigma);
+        require(key("temperature"), spec.blobs[j].temperature, kBlobTemperature);
     }
     for (std::size_t m = 0; m < spec.sources.size(); ++m) {
         const BlobSourceSpec& s = spec.sources[m];
         const auto key = [&](const char* last) { return fmt::format("{}.source.{}.{}", name, m, last); };
-        require(key("from"), s.from, kPlace);
-        require(key("to"), s.to, kPlace);
-        require(key("rate"), s.rate, kRate);
-        require(key("temperature"), s.temperature, kTemperature);
-        require(key("sigma"), s.sigma, kSigma);
-        require(key("cooling"), s.cooling, kCooling);
-        require(key("growth"), s.growth, kGrowth);
-        require(key("lifetime"), s.lifetime, kLifetime);
+        require(key("from"), s.from, kBlobPlace);
+        require(key("to"), s.to, kBlobPlace);
+        require(key("rate"), s.rate, kBlobRate);
+        require(key("temperature"), s.temperature, kBlobTemperature);
+        require(key("sigma"), s.sigma, kBlobSigma);
+        require(key("cooling"), s.cooling, kBlobCooling);
+        require(key("growth"), s.growth, kBlobGrowth);
+        require(key("lifetime"), s.lifetime, kBlobLifetime);
     }
     if (!spec.wind) return;
     const auto key = [&](const char* last) { return fmt::format("{}.wind.{}", name, last); };
-    require(key("rms"), spec.wind->rms, kSpeed);
-    require(key("outer_scale"), spec.wind->outer_scale, kOuterScale);
-    require(key("rise"), spec.wind->rise, kRise);
+    require(key("rms"), spec.wind->rms, kWindSpeed);
+    require(key("outer_scale"), spec.wind->outer_scale, kWindOuterScale);
+    require(key("rise"), spec.wind->rise, kWindRise);
 }
 
 /// Largest number of blobs alive; UserError if it is above kMostBlobs.
@@ -116,7 +107,7 @@ BlobCloud::Range BlobCloud::Source::born(double after, double until) const {
     return {last_until(after) + 1, last_until(until)};
 }
 
-BlobCloud::BlobCloud(const BlobsSpec& spec, const IndexLaw& law, std::string_view name) : law_(law) {
+BlobCloud::BlobCloud(const BlobsSpec& spec, const IndexLaw& law, std::string_view name) : name_(name), law_(law) {
     require_all(spec, name);
     most_ = count(spec, name);
     explicit_.reserve(spec.blobs.size());
@@ -148,7 +139,11 @@ Blob BlobCloud::living(const Source& source, double age, const dvec3& center) co
 }
 
 std::vector<Blob> BlobCloud::at(double t) const {
-    t = std::clamp(t, -kLatestTime, kLatestTime);
+    if (!sources_.empty() && !(std::abs(t) <= kLatestTime))
+        throw FrameError(
+            fmt::format("{}: t = {:g} s is beyond the ±{:g} s for which sources of blobs are worked out; set "
+                        "time.first_frame nearer to the frames, or a higher time.fps",
+                        name_, t, kLatestTime));
     std::vector<Range> range;
     for (const Source& source : sources_) range.push_back(source.born(t - source.spec.lifetime, t));
     const std::vector<std::vector<dvec3>> place = places(t, range);

@@ -18,8 +18,8 @@
 /// same bits as when found anew. The paper's 300 blobs of 5 s in a wind of 0.5 m/s and 1 m: one core needs 10 ms for
 /// the first frame, two thirds of it for the wind's 31 instants, and 0.4 ms a frame at 25 frames a second from then on.
 ///
-/// Range: |t| <= kLatestTime; beyond, the blobs of ±kLatestTime. Constants of every key's range: blobs.cpp; within it
-/// all results are finite. Same bits for any number of threads, order of calls and processor. Thread-safe.
+/// Range: |t| <= kLatestTime where there are sources, else any t. Every key's range is below; within it all results are
+/// finite. Same bits for any number of threads, order of calls and processor. Thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -42,6 +42,16 @@ inline constexpr double kBirthPart = 0.05, kFadePart = 0.1;
 inline constexpr double kLatestTime = 1e9;  ///< [s]
 inline constexpr double kCarriedBytes = 64e6;
 
+/// What a key of the specification may hold.
+struct BlobKeyRange {
+    double least, most;
+    const char* unit;
+};
+inline constexpr BlobKeyRange kBlobPlace{-1e12, 1e12, "m"}, kBlobSigma{1e-6, 1e9, "m"},
+    kBlobTemperature{kLeastTemperature, kGreatestTemperature, "K"}, kBlobRate{0, 1e9, "1/s"},
+    kBlobCooling{0, 1e300, "1/s"}, kBlobGrowth{0, 1e12, "m²/s"}, kBlobLifetime{1e-6, 1e9, "s"},
+    kWindSpeed{0, 1e6, "m/s"}, kWindRise{-1e6, 1e6, "m/s"}, kWindOuterScale{1e-6, 1e9, "m"};
+
 class BlobCloud {
   public:
     /// name: of the medium, for messages, e.g. "medium.0". UserError, naming the key: a value that is not finite or out
@@ -49,7 +59,7 @@ class BlobCloud {
     BlobCloud(const BlobsSpec& spec, const IndexLaw& law, std::string_view name);
 
     /// Explicit blobs, then the living ones of each source in order of birth; n without exaggeration. Blobs that have
-    /// no index left (n = 0) are listed.
+    /// no index left (n = 0) are listed. FrameError beyond kLatestTime.
     std::vector<Blob> at(double t) const;
 
     /// Largest number of blobs that `at` can return.
@@ -86,6 +96,7 @@ class BlobCloud {
     /// Of every living blob, source by source.
     std::vector<std::vector<dvec3>> places(double t, const std::vector<Range>& range) const;
 
+    std::string name_;
     IndexLaw law_;
     std::vector<Blob> explicit_;
     std::vector<Source> sources_;

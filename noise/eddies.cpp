@@ -20,12 +20,16 @@ constexpr std::size_t kLanes = 4;            ///< A_x, A_y, A_z, 0
 constexpr double kCell = kEddyPeriod / kEddySize;
 constexpr std::array<int, 3> kSizes{kEddySize, kEddySize, kEddySize};
 
-using Float4 = float __attribute__((vector_size(16)));
+/// Two nodes beside each other along z, one after the other.
+using TwoNodes = float __attribute__((vector_size(32)));
 
-Float4 load(const float* p) {
-    Float4 v;
+TwoNodes load(const float* p) {
+    TwoNodes v;
     std::memcpy(&v, p, sizeof v);
     return v;
+}
+TwoNodes each(float first, float second) {
+    return TwoNodes{first, first, first, first, second, second, second, second};
 }
 
 /// The cubic B-spline's weights at a fraction of a cell, and their slopes a cell.
@@ -88,9 +92,9 @@ double curl_variance(const LatticeField& field) {
     double sum = 0;
     for (int mx = 0; mx <= kEddySize / 2; ++mx)
         for (int my = 0; my <= kEddySize / 2; ++my)
-            for (int mz = 0; mz <= kEddySize / 2; ++mz) {
-                const double factor = potential_factor(mx, my, mz);
-                sum += signs(mx) * signs(my) * signs(mz) * factor * factor * field.mode_variance(mx, my, mz) *
+            for (int mz = 0; mz <= my; ++mz) {
+                const double factor = potential_factor(mx, my, mz), twice = mz < my ? 2 : 1;  // y and z are alike
+                sum += twice * signs(mx) * signs(my) * signs(mz) * factor * factor * field.mode_variance(mx, my, mz) *
                        gain[static_cast<std::size_t>(mx)].slope * gain[static_cast<std::size_t>(my)].value *
                        gain[static_cast<std::size_t>(mz)].value;
             }
@@ -129,7 +133,7 @@ EddyInstant EddyField::at(double t) const {
     plan_.execute(spectra.data(), nodes.data());
 
     EddyInstant instant;
-    instant.coefficients_.resize(kWrapped * kWrapped * kWrapped * kLanes);
+    instant.coefficients_ = FftScratch<float>(kWrapped * kWrapped * kWrapped * kLanes);
     float* to = instant.coefficients_.data();
     for (std::size_t i = 0; i < kWrapped; ++i)
         for (std::size_t j = 0; j < kWrapped; ++j) {
@@ -137,6 +141,7 @@ EddyInstant EddyField::at(double t) const {
             for (std::size_t l = 0; l < kWrapped; ++l, to += kLanes) {
                 const float* node = from + (l + kSize - 1) % kSize;
                 for (std::size_t c = 0; c < 3; ++c) to[c] = node[c * samples];
+                to[3] = 0;
             }
         }
     return instant;
@@ -145,25 +150,27 @@ EddyInstant EddyField::at(double t) const {
 EIKONAL_CLONES dvec3 EddyInstant::velocity(const dvec3& x) const {
     const Taps tx(x.x), ty(x.y), tz(x.z);
     const float* corner = coefficients_.data() + ((tx.first * kWrapped + ty.first) * kWrapped + tz.first) * kLanes;
-    Float4 dx{}, dy{}, dz{};  // ∂A/∂x, ∂A/∂y, ∂A/∂z
+    const TwoNodes w01 = each(tz.w[0], tz.w[1]), w23 = each(tz.w[2], tz.w[3]);
+    const TwoNodes d01 = each(tz.d[0], tz.d[1]), d23 = each(tz.d[2], tz.d[3]);
+    TwoNodes sum_x{}, sum_y{}, sum_z{};  // of ∂A/∂x, ∂A/∂y, ∂A/∂z: even nodes along z, then odd ones
     for (std::size_t i = 0; i < 4; ++i) {
-        Float4 value{}, slope_y{}, slope_z{};
+        TwoNodes value{}, slope_y{}, slope_z{};
         for (std::size_t j = 0; j < 4; ++j) {
             const float* row = corner + (i * kWrapped + j) * kWrapped * kLanes;
-            Float4 v{}, s{};
-            for (std::size_t l = 0; l < 4; ++l) {
-                const Float4 c = load(row + l * kLanes);
-                v += tz.w[l] * c;
-                s += tz.d[l] * c;
-            }
+            const TwoNodes c01 = load(row), c23 = load(row + 2 * kLanes);
+            const TwoNodes v = w01 * c01 + w23 * c23, s = d01 * c01 + d23 * c23;
             value += ty.w[j] * v;
             slope_y += ty.d[j] * v;
             slope_z += ty.w[j] * s;
         }
-        dx += tx.d[i] * value;
-        dy += tx.w[i] * slope_y;
-        dz += tx.w[i] * slope_z;
+        sum_x += tx.d[i] * value;
+        sum_y += tx.w[i] * slope_y;
+        sum_z += tx.w[i] * slope_z;
     }
+    const auto component = [](const TwoNodes& sum, int c) { return sum[c] + sum[c + 4]; };
+    const dvec3 dx(component(sum_x, 0), component(sum_x, 1), component(sum_x, 2));
+    const dvec3 dy(component(sum_y, 0), component(sum_y, 1), component(sum_y, 2));
+    const dvec3 dz(component(sum_z, 0), component(sum_z, 1), component(sum_z, 2));
     return {dy[2] - dz[1], dz[0] - dx[2], dx[1] - dy[0]};
 }
 

@@ -48,7 +48,7 @@ class EddyInstant {
   private:
     friend class EddyField;
     EddyInstant() = default;
-    FftVector<float> coefficients_;  ///< of the potential, three and a zero a node, wrapped (eddies.cpp)
+    FftScratch<float> coefficients_;  ///< of the potential, three and a zero a node, wrapped (eddies.cpp)
 };
 
 /// Random potential of one wind. Immutable; thread-safe.

@@ -395,15 +395,16 @@ struct Field::State {
         take(static_cast<std::uint64_t>(bytes(padding)));
         interpolation_error = std::max(interpolation_error, error);
         media.emplace_back(LatticeMedium{std::move(field), padding});
-        return fmt::format("lattice {} x {} x {} x {}, its spline {} times finer, whose force is off by {:.2g} of its rms",
-                           geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3], padding, error);
+        return fmt::format(
+            "lattice {} x {} x {} x {}, its spline {} times finer, whose force is off by {:.2g} of its rms",
+            geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3], padding, error);
     }
 
     std::string add(const SurfaceSpec& spec, const IndexLaw& law) {
         SurfaceLayer layer(spec, law);
         if (!layer.bends()) return "left out, the surface is at ambient temperature";
-        std::string note = fmt::format("{} surface, a layer {:.3g} m high",
-                                       layer.above_ambient(0) < 0 ? "hot" : "cold", layer.top());
+        std::string note =
+            fmt::format("{} surface, a layer {:.3g} m high", layer.above_ambient(0) < 0 ? "hot" : "cold", layer.top());
         media.emplace_back(std::move(layer));
         return note;
     }

@@ -10,6 +10,9 @@
 
 namespace eikonal {
 
+/// Temperatures that scenes may state [K]: above, air is plasma, and below it is solid.
+inline constexpr double kLeastTemperature = 1, kGreatestTemperature = 1e9;
+
 /// Wavelengths that stand for the three colour channels [µm].
 inline constexpr double kRedWavelength = 0.65, kGreenWavelength = 0.55, kBlueWavelength = 0.45;
 

@@ -1,11 +1,14 @@
 #include "noise/screens.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "noise/error.h"
 #include "noise/portable_math.h"
 
 namespace eikonal {
@@ -54,7 +57,14 @@ ScreenField::ScreenField(const TurbulenceSpec& spec, std::vector<ScreenGeometry>
     : screens_(std::move(screens)), velocity_x_(glm::dot(spec.velocity, e1)), velocity_y_(glm::dot(spec.velocity, e2)) {
     constexpr std::uint64_t kBandsPerScreen = 256;
     for (std::size_t m = 0; m < screens_.size(); ++m) {
-        const Spectrum spectrum(spec, spec.lowest_wavenumber * portable::kTwoPi / screens_[m].Lx);
+        const ScreenGeometry& s = screens_[m];
+        const double tall = s.Lx / s.Ly * (s.ny / 2), finest = std::sqrt(0.25 * s.nx * s.nx + tall * tall);
+        if (spec.spectrum == SpectrumKind::Paper && spec.lowest_wavenumber > finest)
+            throw UserError(
+                fmt::format("turbulence: lowest_wavenumber = {:g} cycles is beyond the finest eddies of {:.4g} of a "
+                            "screen of {} x {} samples, so that none are left; lower it, or give a larger lattice",
+                            spec.lowest_wavenumber, finest, s.nx, s.ny));
+        const Spectrum spectrum(spec, spec.lowest_wavenumber * portable::kTwoPi / s.Lx);
         std::vector<ScreenBand>& bands = bands_.emplace_back();
         for (const BandGeometry& g : screen_bands(spec, screens_[m]))
             bands.emplace_back(spec, spectrum, g, m * kBandsPerScreen + bands.size());

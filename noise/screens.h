@@ -49,7 +49,8 @@ class ScreenSnapshot {
 /// All screens of a medium. Immutable, thread-safe.
 class ScreenField {
   public:
-    /// screens: as layout_screens gives them; check_screens first. e1, e2: unit vectors of the lateral axes.
+    /// screens: as layout_screens gives them; check_screens first. e1, e2: unit vectors of the lateral axes. UserError:
+    /// the paper's lowest wavenumber is beyond all that a screen resolves.
     ScreenField(const TurbulenceSpec& spec, std::vector<ScreenGeometry> screens, const dvec3& e1, const dvec3& e2);
 
     /// Every screen at time t [s], any finite; costs the same for every t. Same bits for any number of threads.

@@ -8,8 +8,8 @@
 /// method keeps its order (integrator.h); outside every medium the ray is one straight segment (clear_way). `adaptive`
 /// further keeps the local error of every step, as the final displacement it can cause, below 1/kStepShare of the
 /// tolerance. For a perspective camera, errors δx at path length s and δp cause at most (|δx|/s + |δp|/|p|) / pixel;
-/// for an orthographic one (|δx| + |δp|/|p| (end - s)) / pixel, where end is `sight` or the longest path that settings allow.
-/// BentHit::error_px is their sum over all steps: it is about the displacement's error where steps are few to a
+/// for an orthographic one (|δx| + |δp|/|p| (end - s)) / pixel, where end is `sight` or the longest path that settings
+/// allow. BentHit::error_px is their sum over all steps: it is about the displacement's error where steps are few to a
 /// feature, pessimistic (that of order 4) where they are many, and knows nothing of chords and of a field that spreads
 /// rays apart. Against 1e-6 pixels the displacement's error stays below the tolerance (README, How fast).
 ///

@@ -59,7 +59,7 @@ struct ModelResult {
     ErrorStatistics temporal;  ///< |Δd - Δd_true| of the same pixel in consecutive frames
     PictureError picture;
     std::optional<double> stated_p95;  ///< what the warp itself says, without the tracer [px]
-    double setup_seconds = 0;  ///< once a shot
+    double setup_seconds = 0;          ///< once a shot
     double map_seconds = 0, warp_seconds = 0;
     double memory = 0;  ///< [bytes]
 

@@ -133,9 +133,8 @@ std::vector<Fact> facts(const Comparison& c) {
         {"near silhouettes", percent(c.silhouettes) + " of the pixels"},
         {"tracer", fmt::format("{}, tolerance {:g} px, its own estimate of its error {} px on average", c.integrator,
                                c.tolerance, readable(c.tracer_error))},
-        {"tracer's time",
-         fmt::format("{} ms a frame for the picture, {} ms for one ray a pixel without colour",
-                     readable(1e3 * c.picture_seconds), readable(1e3 * c.tracer_seconds))}};
+        {"tracer's time", fmt::format("{} ms a frame for the picture, {} ms for one ray a pixel without colour",
+                                      readable(1e3 * c.picture_seconds), readable(1e3 * c.tracer_seconds))}};
     if (c.without_index > 0) list.push_back({"rays to n <= 0", percent(c.without_index)});
     return list;
 }

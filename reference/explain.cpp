@@ -44,9 +44,9 @@ Probe measure(const Renderer& renderer, int frame) {
 void explain(const Renderer& renderer, const Scene& scene, const RenderSettings& settings,
              const std::vector<int>& frames, int threads) {
     const double area = static_cast<double>(renderer.width()) * renderer.height();
-    fmt::print("picture: {} x {} pixels, {} sample{} a pixel, {} frame{} from {}\n", renderer.width(), renderer.height(),
-               settings.samples, settings.samples == 1 ? "" : "s", frames.size(), frames.size() == 1 ? "" : "s",
-               frames.front());
+    fmt::print("picture: {} x {} pixels, {} sample{} a pixel, {} frame{} from {}\n", renderer.width(),
+               renderer.height(), settings.samples, settings.samples == 1 ? "" : "s", frames.size(),
+               frames.size() == 1 ? "" : "s", frames.front());
     fmt::print("scene: {} object{}, {}\n", scene.objects.size(), scene.objects.size() == 1 ? "" : "s",
                scene.light ? "lit by its sun" : "which show their own colour");
     if (settings.straight)
@@ -64,8 +64,8 @@ void explain(const Renderer& renderer, const Scene& scene, const RenderSettings&
         fmt::print("error: {:.2g} px on average, as the rays estimate it\n", p.error);
     }
     const double frame_seconds = p.seconds * area / p.pixels;
-    fmt::print("time: about {:.3g} s a frame on {} thread{} ({:.3g} µs of one a pixel), {:.3g} s in all\n", frame_seconds,
-               threads, threads == 1 ? "" : "s", 1e6 * threads * p.seconds / p.pixels,
+    fmt::print("time: about {:.3g} s a frame on {} thread{} ({:.3g} µs of one a pixel), {:.3g} s in all\n",
+               frame_seconds, threads, threads == 1 ? "" : "s", 1e6 * threads * p.seconds / p.pixels,
                frame_seconds * static_cast<double>(frames.size()));
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

@@ -120,9 +120,10 @@ void add_render(CLI::App& command, RenderOptions& o) {
         ->check(CLI::Range(2 * kRaysPerTexel, kMostLightRays))
         ->type_name("N");
     add_frames(command, o.frames);
-    command.add_flag("--explain", o.explain,
-                     "write nothing, but say what the frames need and will be: media, steps, displacement, error, time, "
-                     "memory");
+    command.add_flag(
+        "--explain", o.explain,
+        "write nothing, but say what the frames need and will be: media, steps, displacement, error, time, "
+        "memory");
     command.add_flag("--compact", o.compact,
                      fmt::format("small files: colour slightly lossy (DWAA), Z to {:.0e}", kCompactDepthError));
     command.add_flag("--overwrite", o.overwrite, "render frames again whose files exist");

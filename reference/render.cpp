@@ -87,8 +87,7 @@ double Renderer::sight(const Camera& camera, const TraceSettings& trace, double 
     double longest = far;
     for (int j = 0; j < kSightRays; ++j)
         for (int i = 0; i < kSightRays; ++i) {
-            const CameraRay ray =
-                camera_ray(camera, (i + 0.5) / kSightRays * width_, (j + 0.5) / kSightRays * height_);
+            const CameraRay ray = camera_ray(camera, (i + 0.5) / kSightRays * width_, (j + 0.5) / kSightRays * height_);
             if (const auto hit = geometry_.intersect(ray.origin, glm::normalize(ray.direction), 0, trace.far))
                 longest = std::max(longest, hit->t);
         }

@@ -64,7 +64,8 @@ class Renderer {
         return render_tiles(frame, 1, tile_done);
     }
     int tile_count() const;
-    /// Every so many tiles of a frame, counted in rows, only; the rest of its planes is zero. What render() will be like.
+    /// Every so many tiles of a frame, counted in rows, only; the rest of its planes is zero. What render() will be
+    /// like.
     RenderedFrame probe(int frame, int every) const { return render_tiles(frame, every, {}); }
 
     int width() const { return width_; }

@@ -58,7 +58,8 @@ int run(const RenderOptions& o) {
     settings.cancelled = interrupted;
     const Renderer renderer(scene, settings);
     if (o.explain) {
-        explain(renderer, scene, settings, frames, o.common.threads > 0 ? o.common.threads : tbb::info::default_concurrency());
+        explain(renderer, scene, settings, frames,
+                o.common.threads > 0 ? o.common.threads : tbb::info::default_concurrency());
         return 0;
     }
     for (const int frame : frames) {

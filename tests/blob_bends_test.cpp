@@ -98,6 +98,20 @@ TEST(BlobBends, HoldWithTheCameraInsideABlobAndBesideOne) {
     }
 }
 
+TEST(BlobBends, HoldForASmallBlobFarAwayAndAside) {
+    // single precision of absolute places would be off by a hundredth of σ
+    for (const double behind : {0.05, 1.0, 1000.0}) {
+        Camera camera = camera_of(Projection::Perspective, 2e6);
+        const dvec3 from{300, 200, -1000};
+        camera.center = {256 - 0.3 * camera.f_px, 32 + 0.2 * camera.f_px * camera.pixel_aspect};
+        const Blob blob{camera.position + from, 0.01, -3e-4};
+        const double z = 1000 + behind;
+        const Comparison c = compare({blob}, camera, z, z, {z});
+        EXPECT_GT(c.largest, 0.05) << behind;
+        EXPECT_LT(c.error, kBlobNodeError * c.largest + kNegligibleShift) << behind;
+    }
+}
+
 TEST(BlobBends, WhatIsLeftOutStaysBelowTheThreshold) {
     // a thousand blobs whose tails overlap, each weak
     std::vector<Blob> blobs;

@@ -73,19 +73,19 @@ class MediaTest : public Program {
 
 TEST_F(MediaTest, BadBlobsNameTheirKey) {
     const std::string head = "[[medium]]\ntype = \"blobs\"\n";
-    wrong(head + "blob = [{center = [0, 1, -3], temperature = 0}]\n", {"wrong.toml:11:", "temperature", "> 0"});
+    wrong(head + "blob = [{center = [0, 1, -3], temperature = 0}]\n", {"wrong.toml:11:", "temperature", ">= 1 "});
     wrong(head + "blob = [{center = [0, 1, -3], temperature = -5.0}]\n", {"wrong.toml:11:", "temperature", "-5"});
-    wrong(head + "blob = [{center = [0, 1, -3], sigma = 0}]\n", {"wrong.toml:11:", "sigma", "> 0"});
+    wrong(head + "blob = [{center = [0, 1, -3], sigma = 0}]\n", {"wrong.toml:11:", "sigma", ">= 1e-06"});
     wrong(head + "blob = [{center = [0, 1, -3], sigma = -0.1}]\n", {"wrong.toml:11:", "sigma", "-0.1"});
     wrong(head + "blob = [{center = [0, nan, -3]}]\n", {"wrong.toml:11:", "center", "nan"});
     wrong(head + "source = [{from = [0, 1, inf]}]\n", {"wrong.toml:11:", "from", "inf"});
     wrong(head + "source = [{rate = -1}]\n", {"wrong.toml:11:", "rate", "-1", ">= 0"});
-    wrong(head + "source = [{lifetime = 0}]\n", {"wrong.toml:11:", "lifetime", "> 0"});
+    wrong(head + "source = [{lifetime = 0}]\n", {"wrong.toml:11:", "lifetime", ">= 1e-06"});
     wrong(head + "source = [{lifetime = -2}]\n", {"wrong.toml:11:", "lifetime", "-2"});
     wrong(head + "source = [{cooling = -2}]\n", {"wrong.toml:11:", "cooling", "-2"});
     wrong(head + "wind = {rms = -1}\n", {"wrong.toml:11:", "rms", "-1"});
     wrong(head + "wind = {rise = [0, nan, 0]}\n", {"wrong.toml:11:", "rise", "nan"});
-    wrong(head + "wind = {outer_scale = 0}\n", {"wrong.toml:11:", "outer_scale", "> 0"});
+    wrong(head + "wind = {outer_scale = 0}\n", {"wrong.toml:11:", "outer_scale", ">= 1e-06"});
     wrong(head + "source = [{temprature = 900}]\n", {"wrong.toml:11:", "temprature", "temperature"});
 }
 
@@ -97,7 +97,7 @@ TEST_F(MediaTest, MillionsOfBlobsAreRefusedAtOnce) {
 
 TEST_F(MediaTest, BadSurfacesNameTheirKey) {
     const std::string head = "[[medium]]\ntype = \"surface\"\n";
-    wrong(head + "surface_temperature = 0\n", {"wrong.toml:11:", "surface_temperature", "> 0"});
+    wrong(head + "surface_temperature = 0\n", {"wrong.toml:11:", "surface_temperature", ">= 1 "});
     wrong(head + "dropoff = -0.01\n", {"wrong.toml:11:", "dropoff", "> 0"});
     wrong(head + "normal = [0, 0, 0]\n", {"wrong.toml:11:", "normal", "zero"});
     wrong(head + "origin = [0, nan, 0]\n", {"wrong.toml:11:", "origin", "nan"});

@@ -271,7 +271,7 @@ TEST(SceneErrors, WrongTypesAndRanges) {
         parse_error("[camera]\nhorizontal_fov = 180"),
         "scene.toml:2: camera.horizontal_fov: value 180, must be >= 1e-06 and <= 179.99 (angle of view [degrees])");
     EXPECT_EQ(parse_error("optics.ambient_temperature = 0"),
-              "scene.toml:1: optics.ambient_temperature: value 0, must be > 0 ([K])");
+              "scene.toml:1: optics.ambient_temperature: value 0, must be >= 1 and <= 1000000000 ([K])");
     EXPECT_EQ(parse_error("time.first_frame = 99999999999"),
               "scene.toml:1: time.first_frame: value 99999999999, must be >= -1000000000 and <= 1000000000 (the frame "
               "at t = 0)");

@@ -10,6 +10,13 @@
 namespace eikonal {
 namespace {
 
+/// The range of every length in a scene file.
+void check_length(std::string_view what, double metres) {
+    if (!(metres >= kSmallestPositive && metres <= kLargestValue))
+        throw UserError(
+            fmt::format("{} {:g} must be from {:g} to {:g} m", what, metres, kSmallestPositive, kLargestValue));
+}
+
 double parse_part(const std::string& all, std::string_view text) {
     const std::optional<double> value = parse_number(text);
     if (!value)
@@ -63,8 +70,7 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
                 fmt::format("--ground: the horizon's row {0} is within the first pixel; did you mean {1:g}%?", horizon,
                             ground_->horizon * 100));
         if (fraction) ground_->horizon /= 100;
-        if (!(ground_->height > 0))
-            throw UserError(fmt::format("--ground: the camera's height {} must be more than 0", ground_->height));
+        check_length("--ground: the camera's height", ground_->height);
     } else if (plate.ground) {
         ground_ = Ground{(*plate.ground)[0], (*plate.ground)[1], true};
     } else {
@@ -72,6 +78,7 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
     }
     const std::optional<double> range_far =
         a.range ? std::optional(std::max((*a.range)[0], (*a.range)[1])) : std::nullopt;
+    far_is_default_ = !a.far && !range_far && !plate.far;
     if (a.far)
         far_ = *a.far;
     else if (constant_)
@@ -87,6 +94,7 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
             "--depth-meeting: has no meaning where everything is at one distance; give --depth or --ground");
     options_.far = far_;
     if (a.depth) check_depth_options(options_);
+    check_length("--depth-range: the farthest distance", far_);  // all others are within it already
 }
 
 std::string DepthInput::description() const {
@@ -121,6 +129,7 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
                                        : read_depth(files_->at(frame), options_, data, display);
     remarks.insert(remarks.end(), buffer.remarks.begin(), buffer.remarks.end());
     const auto far = static_cast<float>(far_);
+    std::size_t beyond = 0;
     for (int y = 0; y < data.height; ++y)
         for (int x = 0; x < data.width; ++x) {
             float& z = buffer.metres[static_cast<std::size_t>(y) * static_cast<std::size_t>(data.width) +
@@ -129,8 +138,16 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
                 const dvec2 s = camera.slope(data.x0 + x + 0.5, data.y0 + y + 0.5);
                 z = static_cast<float>(z / std::sqrt(1 + s.x * s.x + s.y * s.y));
             }
+            if (z > far) ++beyond;
             z = std::max(std::min(z, far), std::min(kNearestDepth, far));
         }
+    // in inverse depth, whatever is far is about as good as background
+    if (beyond > 0 && far_is_default_ && options_.type != DepthType::Inverse)
+        remarks.push_back(
+            {"depth_far",
+             fmt::format("'{}': {} of {} pixels are beyond the default --far {:g} m and move as if at "
+                         "it; say with --far how far the background is",
+                         (inside_input_ ? input_file : files_->at(frame)).string(), beyond, data.area(), far_)});
     return {data, std::move(buffer.metres)};
 }
 

@@ -38,7 +38,7 @@ class DepthInput {
     std::string description() const;
 
     /// Axial depth on `data`, limited to far(). `input`: the frame's picture, where the map is a channel of it (or
-    /// null).
+    /// null). Remarks, beside those of the map: pixels in metres beyond a far() that nobody stated.
     DepthPlane plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
                      const PixelWindow& display, const Camera& camera, std::vector<Remark>& remarks) const;
 
@@ -51,6 +51,7 @@ class DepthInput {
 
     DepthOptions options_;
     double far_;
+    bool far_is_default_;
     std::optional<double> constant_;
     std::optional<FilePattern> files_;
     std::optional<Ground> ground_;

@@ -74,22 +74,23 @@ void explain(const Shot& shot, const ExplainedRun& run) {
                run.frames.empty() && run.kept > 0 ? fmt::format("all {} frames are there already", run.kept)
                : run.frames.empty()               ? "every frame of the movie"
                                                   : fmt::format("frames {} to make{}", frame_list(run.frames),
-                                                                run.kept > 0 ? fmt::format(", {} there already", run.kept)
-                                                                             : ""));
+                                                  run.kept > 0 ? fmt::format(", {} there already", run.kept) : ""));
     for (const std::string& note : shot.notes()) fmt::print("{}\n", note);
     if (shot.gain() == 0) {
         fmt::print("gain 0: nothing moves, frames are copied\n");
         return;
     }
     const Probe probe = measure(shot, run, first);
-    fmt::print("error: 95 of 100 of {} sampled pixels of frame {} are off by {:.2g} px at most, half of them by {:.2g} px\n",
-               probe.error->samples, first, probe.error->p95, probe.error->p50);
+    fmt::print(
+        "error: 95 of 100 of {} sampled pixels of frame {} are off by {:.2g} px at most, half of them by {:.2g} px\n",
+        probe.error->samples, first, probe.error->p95, probe.error->p50);
     const double frame = run.instants * (probe.instant + probe.map + probe.resample);
-    fmt::print("time: about {:.3g} s a frame on {} thread{} (media {:.2g} s, map {:.2g} s, picture {:.2g} s{}), {:.3g} s in "
-               "all, and what reading and writing take\n",
-               frame, run.threads, run.threads == 1 ? "" : "s", probe.instant, probe.map, probe.resample,
-               run.instants > 1 ? fmt::format(", {} times", run.instants) : "",
-               frame * static_cast<double>(std::max<std::size_t>(run.frames.size(), 1)));
+    fmt::print(
+        "time: about {:.3g} s a frame on {} thread{} (media {:.2g} s, map {:.2g} s, picture {:.2g} s{}), {:.3g} s in "
+        "all, and what reading and writing take\n",
+        frame, run.threads, run.threads == 1 ? "" : "s", probe.instant, probe.map, probe.resample,
+        run.instants > 1 ? fmt::format(", {} times", run.instants) : "",
+        frame * static_cast<double>(std::max<std::size_t>(run.frames.size(), 1)));
     fmt::print("memory: about {:.0f} MB a frame, at most {} of them at a time\n", run.frame_bytes / 1e6,
                run.threads + kFramesAhead);
 }

@@ -224,8 +224,9 @@ void add_run(CLI::App& app, RunOptions& o) {
     app.add_flag("--overwrite", o.overwrite, "make every frame anew (default: keep finished ones)");
     app.add_flag("--skip-bad-frames", o.skip_bad_frames, "go on after a frame that cannot be read or written");
     app.add_flag("--verbose,-v", o.verbose, "say what is computed and why");
-    app.add_flag("--explain", o.explain,
-                 "write nothing, but say what the frames need and will be: media, model, displacement, error, time, memory");
+    app.add_flag(
+        "--explain", o.explain,
+        "write nothing, but say what the frames need and will be: media, model, displacement, error, time, memory");
     add_choice(app, "--progress", o.progress, kProgress, "how progress is shown on stderr");
     app.add_option("--report", o.report, "write what was done as JSON")->type_name("FILE");
 }
@@ -284,7 +285,8 @@ void add_field(CLI::App& app, FieldOptions& o) {
            "which medium of the scene, from 0 (default)")
         ->type_name("N");
     add_run(app, o.run);
-    for (const char* name : {"--frames", "--skip-bad-frames", "--report", "--explain"}) app.remove_option(app.get_option(name));
+    for (const char* name : {"--frames", "--skip-bad-frames", "--report", "--explain"})
+        app.remove_option(app.get_option(name));
 }
 
 /// One line from CLI11's own error, with the nearest valid name for a misspelt option or command.

@@ -24,9 +24,10 @@ std::optional<std::string> tolerance_warning(const Shot& shot, const RunResult& 
     const auto beyond = std::count_if(result.records.begin(), result.records.end(), [&](const FrameRecord& r) {
         return r.stated && r.stated->p95 > *shot.tolerance();
     });
-    return fmt::format("--tolerance {:g}: {} of {} frames go beyond it, frame {} by most: {:.2g} px in 95 of 100 sampled "
-                       "pixels; eikonal-trace render follows the rays truly",
-                       *shot.tolerance(), beyond, result.records.size(), worst->frame, worst->stated->p95);
+    return fmt::format(
+        "--tolerance {:g}: {} of {} frames go beyond it, frame {} by most: {:.2g} px in 95 of 100 sampled "
+        "pixels; eikonal-trace render follows the rays truly",
+        *shot.tolerance(), beyond, result.records.size(), worst->frame, worst->stated->p95);
 }
 
 nlohmann::ordered_json choice_json(const ModelChoice& choice) {
@@ -47,10 +48,11 @@ nlohmann::ordered_json choice_json(const ModelChoice& choice) {
 
 void tell_errors(const Shot& shot, const RunResult& result, bool verbose) {
     if (const FrameRecord* worst = worst_frame(result); worst != nullptr && verbose)
-        fmt::print(stderr,
-                   "eikonal: stated error: 95 of 100 of {} sampled pixels are off by {:.2g} px at most, half of them by "
-                   "{:.2g} px (frame {}, the worst)\n",
-                   worst->stated->samples, worst->stated->p95, worst->stated->p50, worst->frame);
+        fmt::print(
+            stderr,
+            "eikonal: stated error: 95 of 100 of {} sampled pixels are off by {:.2g} px at most, half of them by "
+            "{:.2g} px (frame {}, the worst)\n",
+            worst->stated->samples, worst->stated->p95, worst->stated->p50, worst->frame);
     if (const auto warning = tolerance_warning(shot, result)) fmt::print(stderr, "eikonal: warning: {}\n", *warning);
 }
 

@@ -41,7 +41,8 @@ int run(const MapOptions& options) {
     std::vector<int> frames =
         options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{scene.time.first_frame};
     const PixelWindow display = choose_display(scene, options.depth, frames);
-    Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {}, options.run.states_errors());
+    Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {},
+              options.run.states_errors());
     outputs.check(frames, shot.companions());
     shot.tell(frames, options.run.verbose);
     const std::size_t kept = options.run.overwrite ? 0 : outputs.keep_finished(frames);
@@ -63,8 +64,7 @@ int run(const MapOptions& options) {
                         [] { return std::vector{0}; },
                         [&](FrameItem& item) {
                             const int frame = item.record.frame;
-                            const Shot::Maps made =
-                                shot.maps(frame, {0}, nullptr, {}, display, item.record.remarks);
+                            const Shot::Maps made = shot.maps(frame, {0}, nullptr, {}, display, item.record.remarks);
                             const DisplacementMap& map = made.of_instants.front();
                             item.record.stated = made.error;
                             const MapStatistics size = statistics(map);

@@ -36,8 +36,9 @@ std::string describe(const ModelChoice& choice, double tolerance) {
         if (tried.model != choice.model)
             others += fmt::format("{}{} {}", others.empty() ? "; " : ", ", name_of(tried.model),
                                   tried.refusal.empty() ? fmt::format("{:.2g} px", tried.p95) : "does not apply");
-    return fmt::format("auto: model {}, off by {:.2g} px at most in 95 of 100 sampled pixels, {} the tolerance of {:g} px{}",
-                       name_of(choice.model), choice.p95, choice.within ? "within" : "beyond", tolerance, others);
+    return fmt::format(
+        "auto: model {}, off by {:.2g} px at most in 95 of 100 sampled pixels, {} the tolerance of {:g} px{}",
+        name_of(choice.model), choice.p95, choice.within ? "within" : "beyond", tolerance, others);
 }
 
 }  // namespace
@@ -89,12 +90,11 @@ void Shot::tell(const std::vector<int>& frames, bool verbose) {
     warnings_ = displacer_->warnings();
     if (scene_.media.empty()) warnings_.push_back("the scene has no medium: nothing moves");
     if (choice_ && !choice_->within)
-        warnings_.push_back(
-            fmt::format("--tolerance {:g}: no model stays within it; {}, the best, is off by up to {:.2g} px in 95 of 100 "
-                        "sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render follows "
-                        "the rays truly",
-                        *tolerance_, name_of(choice_->model), choice_->p95,
-                        displacer_->focusing_variance(depth_.far())));
+        warnings_.push_back(fmt::format(
+            "--tolerance {:g}: no model stays within it; {}, the best, is off by up to {:.2g} px in 95 of 100 "
+            "sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render follows "
+            "the rays truly",
+            *tolerance_, name_of(choice_->model), choice_->p95, displacer_->focusing_variance(depth_.far())));
     const auto [first, last] = std::minmax_element(frames.begin(), frames.end());
     if (scene_.camera.path && !frames.empty()) {
         const CameraPath path(scene_.camera, display_.width, display_.height);

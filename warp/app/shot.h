@@ -51,8 +51,7 @@ class Shot {
     /// Maps of the instants at frame + offsets, on `window`, masked. `input`: the frame's picture or null. What is odd
     /// about the depth map and the matte is added to `remarks`. FrameError: the run is interrupted, among others.
     Maps maps(int frame, const std::vector<double>& offsets, const Picture* input,
-                                      const std::filesystem::path& input_file, const PixelWindow& window,
-                                      std::vector<Remark>& remarks) const;
+              const std::filesystem::path& input_file, const PixelWindow& window, std::vector<Remark>& remarks) const;
 
     /// Looks at the depth maps and mattes before any frame is begun: one line on the first that is missing. UserError:
     /// the first frame's cannot be what the options say of it. `input`: as for maps().

@@ -1,5 +1,5 @@
-/// A displacement map applied to one frame of footage, whatever it holds: every part, layer and channel of a picture, or
-/// the planes of a movie frame. Colour in linear light through the resampler; data channels moved, never filtered; a
+/// A displacement map applied to one frame of footage, whatever it holds: every part, layer and channel of a picture,
+/// or the planes of a movie frame. Colour in linear light through the resampler; data channels moved, never filtered; a
 /// pixel that does not move keeps its bytes.
 #pragma once
 

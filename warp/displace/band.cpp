@@ -42,6 +42,10 @@ Mix mix_at(const Band& band, double z) {
     const std::size_t last = depths.size() - 1;
     const double scale = band.perspective ? 1 / z : 1.0;
     const auto scaled = [&](double v) { return static_cast<float>(v * scale); };
+    if (z < depths.front() && band.interpolation == DepthInterpolation::Hermite) {
+        const double part = z / depths[0];  // X ∝ z²
+        return {z, 0, 0, static_cast<float>(band.perspective ? part / depths[0] : part * part), 0, 0, 0};
+    }
     if (z <= depths.front())
         return {z, 0, 0, band.perspective ? static_cast<float>(1 / depths[0]) : static_cast<float>(z / depths[0]),
                 0, 0, 0};

@@ -11,7 +11,8 @@
 /// (tables: the paper's suggestion). Between grid nodes it is a six-point Lagrange interpolant, exact for fifth-order
 /// polynomials; at a spacing of 1 there is nothing to interpolate.
 ///
-/// Beyond the last depth X continues along its last slope; before the first it is interpolated from X(0) = 0. Finite
+/// Beyond the last depth X continues along its last slope; before the first it rises from X(0) = 0 as z², as it does
+/// within an eddy, or evenly where interpolation is linear. Finite
 /// for every z > 0 that a float can hold, as long as the nodes are.
 #pragma once
 

@@ -26,7 +26,8 @@ double sampled_p95(const Displacer& displacer, const Scene& scene, const Displac
             const PixelWindow row{0, (2 * r + 1) * settings.height / (2 * kChoiceRows), settings.width, 1};
             for (const double distance : distances) {
                 instant.map(row, distance, DepthMeeting::Own, uv.data());
-                const int samples = std::max<int>(1, kErrorSamples / (kChoiceRows * static_cast<int>(distances.size())));
+                const int samples =
+                    std::max<int>(1, kErrorSamples / (kChoiceRows * static_cast<int>(distances.size())));
                 const std::vector<double> some =
                     instant.sampled_errors(row, distance, DepthMeeting::Own, uv.data(), samples);
                 errors.insert(errors.end(), some.begin(), some.end());
@@ -43,8 +44,7 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
                          const GainOf& gain_of) {
     settings.sample_errors = true;
     const double far = settings.far;
-    const std::vector<double> distances =
-        one_distance ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
+    const std::vector<double> distances = one_distance ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
     ModelChoice choice{};
     for (const auto& [name, model] : kModelNames) {
         settings.model = model;

@@ -28,7 +28,7 @@ struct TriedModel {
 struct ModelChoice {
     std::unique_ptr<Displacer> displacer;
     Model model;
-    double p95 = 0;     ///< of the model chosen [px]
+    double p95 = 0;  ///< of the model chosen [px]
     bool within = true;
     std::vector<TriedModel> tried;
 };

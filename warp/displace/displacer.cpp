@@ -60,7 +60,8 @@ struct Displacer::Instant::State {
     std::vector<Band> tile_bands(const PixelWindow& tile, const PixelWindow& cover) const;
     /// Those that may move a pixel of the window.
     std::span<const Mirage> mirages_on(const PixelWindow& window) const {
-        const bool any = std::any_of(mirages.begin(), mirages.end(), [&](const Mirage& m) { return m.touches(window); });
+        const bool any =
+            std::any_of(mirages.begin(), mirages.end(), [&](const Mirage& m) { return m.touches(window); });
         return any ? mirages : std::span<const Mirage>{};
     }
     /// How far a bent ray may lead from its pixel [px].

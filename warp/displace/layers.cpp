@@ -57,6 +57,7 @@ int spline_padding(const LatticeField& field, double allowed) {
 MediaLayers::MediaLayers(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path)
     : scene_(scene),
       settings_(settings),
+      path_(path),
       camera_moves_(path.moving()),
       reference_(path.reference()),
       strength_(force_strength(scene.optics)),
@@ -142,11 +143,22 @@ void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
                                          : fmt::format("its blobs move no pixel by more than {:.2g} px", bound)));
         return;
     }
-    notes_.push_back(
-        fmt::format("medium.{}: model {}, up to {} blobs at a time", i,
-                    second_order() ? "second-order (through all media together)" : "first-order (closed form)",
-                    cloud.most()));
+    notes_.push_back(fmt::format(
+        "medium.{}: model {}, up to {} blobs at a time", i,
+        second_order() ? "second-order (through all media together)" : "first-order (closed form)", cloud.most()));
     add_layer({i, own(Model::FirstOrder), std::move(cloud), {}, 0});
+}
+
+void MediaLayers::check_camera_stays_above(const SurfaceSpec& spec, const std::string& name) const {
+    if (!camera_moves_) return;
+    const SurfaceLayer layer(spec, law_);
+    const auto [first, last] = path_.frames();
+    for (double frame = first; frame <= last; ++frame)
+        if (const double height = layer.height(path_.at(frame).position); !(height > 0))
+            throw UserError(fmt::format(
+                "{}.origin: the camera's path is {:g} m below this surface at frame {:g}; it must be above it in every "
+                "frame: lower the surface, or turn its normal towards the camera",
+                name, 0.0 - height, frame));
 }
 
 void MediaLayers::add(std::size_t i, const SurfaceSpec& spec) {
@@ -155,6 +167,7 @@ void MediaLayers::add(std::size_t i, const SurfaceSpec& spec) {
         return;
     }
     const std::string name = fmt::format("medium.{}", i);
+    check_camera_stays_above(spec, name);
     Mirage mirage(spec, law_, scene_.optics.exaggeration, scene_.optics.ray_equation, reference_, settings_.far, name);
     if (!camera_moves_ && !mirage.touches({0, 0, settings_.width, settings_.height})) {
         notes_.push_back(fmt::format("{}: left out, it moves no pixel of the view by more than {:g} px up to {:g} m",
@@ -193,8 +206,8 @@ void MediaLayers::add_screens(std::size_t i, const TurbulenceSpec& spec) {
     std::string note = fmt::format(
         "medium.{}: model {} ({} view): {} screens of {} x {} x {} samples over {:g} m, {:.3g} m "
         "apart, periods {:.3g} x {:.3g} m, {:.3g} s",
-        i, name_of(own(Model::Screens)), perspective() ? "perspective" : "orthographic", geometry.size(), middle.nx, middle.ny, middle.nt,
-        settings_.far, middle.thickness, middle.Lx, middle.Ly, middle.T);
+        i, name_of(own(Model::Screens)), perspective() ? "perspective" : "orthographic", geometry.size(), middle.nx,
+        middle.ny, middle.nt, settings_.far, middle.thickness, middle.Lx, middle.Ly, middle.T);
     const std::size_t before = layers_.size();
     keep({i, own(Model::Screens), ScreenField(spec, std::move(geometry), reference_.right, reference_.up), {}, 0},
          std::move(note));

@@ -67,9 +67,9 @@ class MediaLayers {
                                        double gain) const;
     /// Whether the layers' rays go through all of them together (second-order).
     bool second_order() const { return settings_.model == Model::SecondOrder; }
-    /// Rays through the sum of the layers: the nodes' rays of second-order or, if `reference`, through the surfaces, too,
-    /// and in finer steps than second-order's own if that is the model: what any model is judged by. own: instants() with the same arguments. gain multiplies
-    /// every n - n_ambient but the surfaces'. This must outlive it.
+    /// Rays through the sum of the layers: the nodes' rays of second-order or, if `reference`, through the surfaces,
+    /// too, and in finer steps than second-order's own if that is the model: what any model is judged by. own:
+    /// instants() with the same arguments. gain multiplies every n - n_ambient but the surfaces'. This must outlive it.
     SecondOrderInstant together(const std::vector<LayerInstant>& own, const Camera& camera, double t, double nearest,
                                 double farthest, double gain, bool reference) const;
 
@@ -92,6 +92,7 @@ class MediaLayers {
     void add(std::size_t i, const BlobsSpec& spec);
     void add(std::size_t i, const SurfaceSpec& spec);
     void add(std::size_t i, const ProfileSpec& spec);
+    void check_camera_stays_above(const SurfaceSpec& spec, const std::string& name) const;
     void add_screens(std::size_t i, const TurbulenceSpec& spec);
     void add_lattice(std::size_t i, const TurbulenceSpec& spec);
     void add_noise(std::size_t i, const TurbulenceSpec& spec);
@@ -120,6 +121,7 @@ class MediaLayers {
 
     const Scene& scene_;
     const DisplacerSettings& settings_;
+    const CameraPath& path_;
     bool camera_moves_;
     Camera reference_;
     double strength_;
@@ -127,8 +129,8 @@ class MediaLayers {
     std::vector<MediumLayer> layers_;
     std::vector<std::pair<std::size_t, SurfaceSpec>> surfaces_;
     std::vector<SurfaceLayer> surface_layers_;  ///< the same
-    std::vector<std::string> surface_names_;  ///< for messages
-    std::vector<Mirage> reference_mirages_;   ///< as the reference camera sees them
+    std::vector<std::string> surface_names_;    ///< for messages
+    std::vector<Mirage> reference_mirages_;     ///< as the reference camera sees them
     std::vector<std::string> notes_, warnings_;
 };
 

@@ -54,7 +54,7 @@ Mirage::Mirage(const SurfaceSpec& spec, const IndexLaw& law, double exaggeration
         throw UserError(fmt::format(
             "{}.origin: the camera at ({:g}, {:g}, {:g}) is {:g} m below this surface; it must be above it in "
             "every frame: lower the surface, or turn its normal towards the camera",
-            medium, camera.position.x, camera.position.y, camera.position.z, -H_));
+            medium, camera.position.x, camera.position.y, camera.position.z, 0.0 - H_));
     if (!(optics_.ambient > optics_.N * optics_.beta / (1 + optics_.beta)))
         throw UserError(
             fmt::format("{}: with an exaggeration of {:g} the refractive index at the surface is not positive; lower "

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "noise/blobs.h"
+#include "noise/refractivity.h"
 #include "warp/scene/camera.h"
 
 // names() and keys() are found by the templates of table.h through the types of the scene, hence live in their
@@ -76,6 +79,14 @@ static Names<ObjectShape> names(ObjectShape) {
 
 // ---- rules that several tables share -------------------------------------------------------------------------------
 
+static scene_file::Range temperature() {
+    return between(kLeastTemperature, kGreatestTemperature);
+}
+
+static scene_file::Range within(const BlobKeyRange& allowed) {
+    return between(allowed.least, std::min(allowed.most, kLargestValue));
+}
+
 /// A vector of which only the direction counts: never zero, normalised.
 static Key direction(std::string_view name, std::string_view meaning, dvec3& target) {
     return Key(name, meaning, target).always([&target] {
@@ -143,7 +154,7 @@ static Keys keys(TimeSpec& t) {
 static Keys keys(OpticsSpec& o) {
     return {
         {"ray_equation", "convention of the ray equation", o.ray_equation},
-        {"ambient_temperature", "[K]", o.ambient_temperature, {positive()}},
+        {"ambient_temperature", "[K]", o.ambient_temperature, {temperature()}},
         {"index", "index of air from its temperature", o.index},
         {"exaggeration", "factor on index minus ambient index", o.exaggeration},
         {"aperture", "diameter of the lens [m]; 0 is a point", o.aperture, {at_least(0)}},
@@ -204,7 +215,7 @@ static Keys keys(SurfaceSpec& s) {
     return {
         {"origin", "a point of the surface [m]", s.origin},
         direction("normal", "of the surface", s.normal),
-        {"surface_temperature", "[K]", s.surface_temperature, {positive()}},
+        {"surface_temperature", "[K]", s.surface_temperature, {temperature()}},
         {"dropoff", "height over which the heat falls by e [m]", s.dropoff, {positive()}},
     };
 }
@@ -212,8 +223,8 @@ static Keys keys(SurfaceSpec& s) {
 static Keys keys(BlobSpec& b) {
     return {
         {"center", "[m]", b.center},
-        {"sigma", "radius [m]", b.sigma, {positive()}},
-        {"temperature", "[K]", b.temperature, {positive()}},
+        {"sigma", "radius [m]", b.sigma, {within(kBlobSigma)}},
+        {"temperature", "[K]", b.temperature, {within(kBlobTemperature)}},
     };
 }
 
@@ -221,21 +232,21 @@ static Keys keys(BlobSourceSpec& s) {
     return {
         {"from", "one end of the source [m]", s.from},
         {"to", "its other end [m]", s.to},
-        {"rate", "blobs a second", s.rate, {at_least(0)}},
-        {"temperature", "at birth [K]", s.temperature, {positive()}},
-        {"sigma", "radius [m]", s.sigma, {positive()}},
+        {"rate", "blobs a second", s.rate, {within(kBlobRate)}},
+        {"temperature", "at birth [K]", s.temperature, {within(kBlobTemperature)}},
+        {"sigma", "radius [m]", s.sigma, {within(kBlobSigma)}},
         {"cooling", "[1/s]", s.cooling, {at_least(0)}},
         {"growth", "of sigma squared, by diffusion [m²/s]", s.growth, {at_least(0)}},
-        {"lifetime", "[s]", s.lifetime, {positive()}},
+        {"lifetime", "[s]", s.lifetime, {within(kBlobLifetime)}},
     };
 }
 
 static Keys keys(WindSpec& w) {
     return {
         {"seed", "of its random numbers", w.seed},
-        {"rms", "of each component of the velocity [m/s]", w.rms, {at_least(0)}},
-        {"outer_scale", "largest eddies [m]", w.outer_scale, {positive()}},
-        {"rise", "mean velocity [m/s]", w.rise},
+        {"rms", "of each component of the velocity [m/s]", w.rms, {within(kWindSpeed)}},
+        {"outer_scale", "largest eddies [m]", w.outer_scale, {within(kWindOuterScale)}},
+        {"rise", "mean velocity [m/s]", w.rise, {within(kWindRise)}},
     };
 }
 
