@@ -52,12 +52,10 @@ class Slices {
 /// `result` has come to the start or end of the last of the steps that the meeting is on. The speeds of neighbouring
 /// slices hardly differ: its length is right to their difference times that of a chord.
 BentHit end_at(BentHit result, const SurfaceSearch::Met& met) {
-    result.end = BentHit::End::Surface;
-    result.hit = true;
-    result.surface = met.hit;
     const RayState at = met.step.at(met.theta);
     result.length += (at.u - result.at.u) * glm::length(at.p);
-    result.at = {met.hit.point, at.p, at.u};
+    result.at = at;
+    result.meet(met.hit);
     return result;
 }
 
@@ -160,12 +158,7 @@ BentHit trace_mirror(const FieldInstant& field, const Geometry* geometry, const 
             if (!hit || std::abs(glm::dot(hit->point - on_plane, normal)) < slack) ray.x += slack * normal;
             continue;
         }
-        if (hit) {
-            result.end = BentHit::End::Surface;
-            result.hit = true;
-            result.surface = *hit;
-            ray.x = hit->point;
-        }
+        if (hit) result.meet(*hit);
         return result;
     }
 }

@@ -80,6 +80,14 @@ struct BentHit {
     double length = 0;    ///< of path from the origin [m]
     int steps = 0;        ///< attempted
     double error_px = 0;  ///< estimate, see above [pixels]
+
+    /// Ends the ray on a surface.
+    void meet(const Hit& there) {
+        end = End::Surface;
+        hit = true;
+        surface = there;
+        at.x = there.point;
+    }
 };
 
 /// Called with every step that the ray takes. Those after its end may be among them.

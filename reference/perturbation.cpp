@@ -199,12 +199,7 @@ BentHit trace_perturbed(const FieldInstant& field, const Geometry* geometry, con
     if (recorder) recorder(straight_step(ray, result.length));
     ray.u += result.length / speed;
     ray.x += result.length / speed * ray.p;
-    if (hit) {
-        result.end = BentHit::End::Surface;
-        result.hit = true;
-        result.surface = *hit;
-        ray.x = hit->point;
-    }
+    if (hit) result.meet(*hit);
     return result;
 }
 
