@@ -202,7 +202,9 @@ std::vector<Contender> contenders(const Scene& scene, const std::vector<std::str
         try {
             settle(c, model);
             if (usual.empty())
-                c.result.refusal = "no medium of this scene takes a model: what moves pixels is in closed form";
+                c.result.refusal = c.displacer->mirages()
+                                       ? "no medium of this scene takes a model: surfaces bend rays exactly"
+                                       : "nothing in this scene moves pixels";
             else if (c.displacer->models() == usual &&
                      std::count(usual.begin(), usual.end(), name) != static_cast<std::ptrdiff_t>(usual.size()))
                 c.result.refusal = fmt::format("the same as default, which takes {}", fmt::join(usual, ", "));

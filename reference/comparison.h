@@ -10,7 +10,8 @@
 /// carry the warp's reason.
 ///
 /// Times are of this machine, wall time on all threads: the median of up to kTimedRuns runs of each frame's map and
-/// warp; of the tracer, one ray through each pixel's centre, without colour or antialiasing, once a frame.
+/// warp; of the tracer, the truth's picture, `samples` rays a pixel, once a frame (and one ray through each pixel's
+/// centre, without colour, beside it).
 /// Memory is measured: by how much the resident memory of the process grows at its highest while the model's shot and
 /// its first map are made. 0 where the system does not tell.
 #pragma once

@@ -161,11 +161,12 @@ std::string method(const Comparison& c) {
         "<p>Pictures are compared as shown: PSNR and SSIM of sRGB codes; <i>visible</i> is the part of the pixels that "
         "an eye tells apart (Yee). Times are this machine’s wall times on all threads; <i>times faster</i> is against "
         "the "
-        "{} tracer with one ray through each pixel’s centre and no antialiasing, in the same run. Memory is by how "
+        "{} tracer’s picture with {} rays a pixel, in the same run. Memory is by how "
         "much "
         "the resident memory of the process grew at its highest while a model’s shot and first map were made.</p>\n"
-        "<p>Rows in colour are the efficient ones: no other model is both quicker and more exact (p95).{}</p>\n",
-        100 * kSilhouetteJump, kSilhouetteReach, c.integrator,
+        "<p>Rows in colour are the efficient ones: no other model, nor the plate itself, is both quicker and more "
+        "exact (p95).{}</p>\n",
+        100 * kSilhouetteJump, kSilhouetteReach, c.integrator, c.samples,
         c.over_time() ? " <i>From frame to frame</i> is the error of each pixel’s change of displacement between "
                         "consecutive frames: flicker, which the eye sees first."
                       : "");

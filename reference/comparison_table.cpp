@@ -67,10 +67,10 @@ std::string percent(double part) {
 std::vector<Column> columns(const Comparison& comparison) {
     std::vector<Column> list;
     add_errors<&ModelResult::all>(list, ColumnGroup::All, "", true);
-    add_errors<&ModelResult::smooth>(list, ColumnGroup::Smooth, "smooth_", true);
-    add_errors<&ModelResult::silhouettes>(list, ColumnGroup::Silhouettes, "silhouette_", true);
     list.push_back({ColumnGroup::All, "stated_p95", "stated p95", true,
                     [](const Comparison&, const ModelResult& m) { return m.stated_p95; }});
+    add_errors<&ModelResult::smooth>(list, ColumnGroup::Smooth, "smooth_", true);
+    add_errors<&ModelResult::silhouettes>(list, ColumnGroup::Silhouettes, "silhouette_", true);
     if (comparison.over_time()) add_errors<&ModelResult::temporal>(list, ColumnGroup::Temporal, "temporal_", true);
     using C = const Comparison&;
     using M = const ModelResult&;

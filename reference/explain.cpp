@@ -64,7 +64,7 @@ void explain(const Renderer& renderer, const Scene& scene, const RenderSettings&
         fmt::print("error: {:.2g} px on average, as the rays estimate it\n", p.error);
     }
     const double frame_seconds = p.seconds * area / p.pixels;
-    fmt::print("time: about {:.3g} s a frame on {} thread{} ({:.3g} µs of one a pixel), {:.3g} s in all\n",
+    fmt::print("time: about {:.3g} s a frame on {} thread{} ({:.3g} µs of processor time a pixel), {:.3g} s in all\n",
                frame_seconds, threads, threads == 1 ? "" : "s", 1e6 * threads * p.seconds / p.pixels,
                frame_seconds * static_cast<double>(frames.size()));
     rusage usage{};

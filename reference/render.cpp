@@ -1,11 +1,13 @@
 #include "reference/render.h"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "noise/error.h"
 #include "noise/random.h"
 #include "reference/sampler.h"
 #include "warp/image/pixel_codec.h"
@@ -78,6 +80,13 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings)
       geometry_(scene_, path_.reference().position),
       shading_(scene_, geometry_) {
     if (!settings.straight) air_.emplace(scene_, settings.rays);
+    const bool quads = std::any_of(scene_.objects.begin(), scene_.objects.end(),
+                                   [](const ObjectSpec& o) { return o.shape == ObjectShape::Quad; });
+    if (settings.light_rays > 0 && (!scene_.light || !quads))
+        throw UserError(
+            fmt::format("--light-rays {}: there is no {} in the scene; sunlight is followed onto quads under a "
+                        "[light]",
+                        settings.light_rays, !scene_.light ? "[light]" : "[[object]] of shape quad"));
 }
 
 /// Of an orthographic camera's straight rays, kSightRays² of them, the longest way to what they meet; at least the

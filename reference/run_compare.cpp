@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <fstream>
 
 #include "noise/error.h"
 #include "reference/commands.h"
@@ -21,18 +22,32 @@ void make_folder(const std::filesystem::path& folder) {
                                     error ? error.message() : ""));
 }
 
+/// The scene that a folder's table is headed by.
+std::string compared_scene(const std::filesystem::path& folder) {
+    std::ifstream table(folder / "errors.txt");
+    std::string name;
+    std::getline(table, name);
+    return name.empty() ? "something else" : name;
+}
+
 }  // namespace
 
 int run(const CompareOptions& o) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
     const std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
     const std::filesystem::path page = o.output / "index.html";
+    Comparer comparer(scene, o.compare);
     std::error_code ignored;
     if (!o.overwrite && std::filesystem::exists(page, ignored)) {
+        const std::string there = compared_scene(o.output), name = scene.file.filename().string();
+        if (there != name)
+            throw UserError(
+                fmt::format("--output {}: holds the comparison of {}, not of {}; --overwrite replaces it, or name "
+                            "another folder",
+                            o.output.string(), there, name));
         fmt::print(stderr, "kept {} (--overwrite compares again)\n", page.string());
         return 0;
     }
-    Comparer comparer(scene, o.compare);
     make_folder(o.output);
     std::vector<PagePicture> pictures;
     for (const int frame : frames) {
