@@ -131,6 +131,12 @@ void Program::silent(const Ended& ended) const {
     EXPECT_EQ(ended.err, "");
 }
 
+void Program::silent_but_for_folding(const Ended& ended) const {
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    for (const std::string& line : ended.lines())
+        EXPECT_NE(line.find("rays fold, and the picture tears"), std::string::npos) << line;
+}
+
 std::string Program::bytes(const std::string& name) const {
     return slurp(path(name));
 }

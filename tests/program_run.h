@@ -62,6 +62,8 @@ class Program : public testing::Test {
     void refused(const Ended& ended, int status, std::initializer_list<std::string> fragments) const;
     /// Expects success without a word.
     void silent(const Ended& ended) const;
+    /// Expects success, and no word but on folding rays, which small pictures that are moved by pixels must have.
+    void silent_but_for_folding(const Ended& ended) const;
 
     fs::path path(const std::string& name) const { return folder_ / name; }
     std::string bytes(const std::string& name) const;

@@ -105,6 +105,10 @@ std::string DepthInput::description() const {
                        options_.channel.empty() ? "" : fmt::format(" channel '{}'", options_.channel), far_);
 }
 
+PixelWindow seen_from(const PixelWindow& data, const PixelWindow& display) {
+    return {data.x0 - display.x0, data.y0 - display.y0, data.width, data.height};
+}
+
 DepthPlane DepthInput::ground_plane(const PixelWindow& data, const PixelWindow& display, const Camera& camera) const {
     const double horizon = display.y0 + (ground_->fraction ? ground_->horizon * display.height : ground_->horizon);
     const double f = camera.f_px * camera.pixel_aspect;
@@ -115,13 +119,13 @@ DepthPlane DepthInput::ground_plane(const PixelWindow& data, const PixelWindow& 
         const auto row = metres.begin() + static_cast<std::ptrdiff_t>(y) * data.width;
         std::fill(row, row + data.width, static_cast<float>(z));
     }
-    return {data, std::move(metres)};
+    return {seen_from(data, display), std::move(metres)};
 }
 
 DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesystem::path& input_file,
                              const PixelWindow& data, const PixelWindow& display, const Camera& camera,
                              std::vector<Remark>& remarks) const {
-    if (constant_) return {data, std::vector<float>(data.area(), static_cast<float>(*constant_))};
+    if (constant_) return {seen_from(data, display), std::vector<float>(data.area(), static_cast<float>(*constant_))};
     if (ground_) return ground_plane(data, display, camera);
     if (inside_input_ && input == nullptr)
         throw UserError(fmt::format("--depth :{}: a movie holds no depth channel; name a file", options_.channel));
@@ -135,7 +139,7 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
             float& z = buffer.metres[static_cast<std::size_t>(y) * static_cast<std::size_t>(data.width) +
                                      static_cast<std::size_t>(x)];
             if (buffer.along_ray && camera.projection == Projection::Perspective) {
-                const dvec2 s = camera.slope(data.x0 + x + 0.5, data.y0 + y + 0.5);
+                const dvec2 s = camera.slope(data.x0 - display.x0 + x + 0.5, data.y0 - display.y0 + y + 0.5);
                 z = static_cast<float>(z / std::sqrt(1 + s.x * s.x + s.y * s.y));
             }
             if (z > far) ++beyond;
@@ -148,7 +152,7 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
              fmt::format("'{}': {} of {} pixels are beyond the default --far {:g} m and move as if at "
                          "it; say with --far how far the background is",
                          (inside_input_ ? input_file : files_->at(frame)).string(), beyond, data.area(), far_)});
-    return {data, std::move(buffer.metres)};
+    return {seen_from(data, display), std::move(buffer.metres)};
 }
 
 }  // namespace eikonal

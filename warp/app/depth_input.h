@@ -21,6 +21,9 @@ struct FileChannel {
 };
 FileChannel split_channel(const std::string& text);
 
+/// A window counted from the display window's corner: the camera's view begins there, wherever the file puts it.
+PixelWindow seen_from(const PixelWindow& data, const PixelWindow& display);
+
 class DepthInput {
   public:
     /// Decides the source. UserError: ill-formed values, nothing that tells a distance, options without effect.
@@ -37,8 +40,9 @@ class DepthInput {
     /// One line for --verbose.
     std::string description() const;
 
-    /// Axial depth on `data`, limited to far(). `input`: the frame's picture, where the map is a channel of it (or
-    /// null). Remarks, beside those of the map: pixels in metres beyond a far() that nobody stated.
+    /// Axial depth on `data`, limited to far(), as the camera sees it (seen_from). `input`: the frame's picture, where
+    /// the map is a channel of it (or null). Remarks, beside those of the map: pixels in metres beyond a far() that
+    /// nobody stated.
     DepthPlane plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
                      const PixelWindow& display, const Camera& camera, std::vector<Remark>& remarks) const;
 

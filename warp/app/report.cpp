@@ -31,8 +31,9 @@ std::optional<std::string> tolerance_warning(const Shot& shot, const RunResult& 
 }
 
 nlohmann::ordered_json choice_json(const ModelChoice& choice) {
-    nlohmann::ordered_json json{
-        {"model", name_of(choice.model)}, {"p95_px", choice.p95}, {"within_tolerance", choice.within}};
+    nlohmann::ordered_json json{{"model", choice.exact ? "exact" : name_of(choice.model)},
+                                {"p95_px", choice.p95},
+                                {"within_tolerance", choice.within}};
     for (const TriedModel& tried : choice.tried) {
         nlohmann::ordered_json entry{{"model", name_of(tried.model)}};
         if (tried.refusal.empty())
@@ -64,7 +65,7 @@ void write_report(const std::filesystem::path& file, const Shot& shot, const Run
     json["gain"] = shot.gain();
     json["expected_rms_px"] = shot.expected_rms();
     json["far_m"] = shot.depth().far();
-    json["focusing_variance"] = shot.displacer().focusing_variance(shot.depth().far());
+    json["focusing_variance"] = shot.focusing_variance();
     json["fps"] = shot.fps();
     json["notes"] = shot.notes();
     json["warnings"] = shot.warnings();

@@ -106,7 +106,8 @@ class WarpRun {
             bool there = false;
             try {
                 there = reader_->next(frame);
-                if (!there && open_ended) return nullptr;
+                // an estimate of the number of frames proves no frame missing
+                if (!there && (open_ended || (!options_.run.frames && !reader_->count_is_exact()))) return nullptr;
                 if (!there) throw FrameError(fmt::format("'{}' ends earlier", options_.input.string()));
             } catch (const FrameError&) {
                 // what a movie that ends too early lacks is told at once

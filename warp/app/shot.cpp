@@ -31,6 +31,11 @@ double gain_of(const Displacer& displacer, const StrengthOptions& strength, doub
 
 /// One line on how the model was chosen.
 std::string describe(const ModelChoice& choice, double tolerance) {
+    if (choice.exact)
+        return fmt::format(
+            "auto: nothing to choose, no medium of this scene takes a model; off by {:.2g} px at most in 95 of "
+            "100 sampled pixels",
+            choice.p95);
     std::string others;
     for (const TriedModel& tried : choice.tried)
         if (tried.model != choice.model)
@@ -94,7 +99,16 @@ void Shot::tell(const std::vector<int>& frames, bool verbose) {
             "--tolerance {:g}: no model stays within it; {}, the best, is off by up to {:.2g} px in 95 of 100 "
             "sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render follows "
             "the rays truly",
-            *tolerance_, name_of(choice_->model), choice_->p95, displacer_->focusing_variance(depth_.far())));
+            *tolerance_, name_of(choice_->model), choice_->p95, focusing_variance()));
+    const bool first_order =
+        displacer_->models().empty() || displacer_->models().front() != name_of(Model::SecondOrder);
+    if (std::abs(gain_) > 1 && first_order)
+        if (const double focusing = focusing_variance(); focusing > kFolding)
+            warnings_.push_back(
+                fmt::format("multiplied by {:.3g}, the air has a focusing variance of {:.2g} at {:g} m: rays fold, and "
+                            "the picture tears; "
+                            "ask for a smaller --rms or --gain, or for --model second-order",
+                            gain_, focusing, depth_.far()));
     const auto [first, last] = std::minmax_element(frames.begin(), frames.end());
     if (scene_.camera.path && !frames.empty()) {
         const CameraPath path(scene_.camera, display_.width, display_.height);
@@ -116,9 +130,12 @@ std::vector<std::string> Shot::notes() const {
     lines.push_back("depth: " + depth_.description());
     for (const std::string& note : displacer_->notes()) lines.push_back(note);
     if (choice_) lines.push_back(describe(*choice_, *tolerance_));
-    lines.push_back(fmt::format("displacement: {:.3g} px rms expected at {:g} m, gain {:.4g}", expected_rms(),
-                                depth_.far(), gain_));
-    if (const double focusing = displacer_->focusing_variance(depth_.far()); focusing > 0)
+    if (displacer_->mirages() && displacer_->models().empty())
+        lines.push_back("displacement: by surfaces alone, exact and not estimated beforehand");
+    else
+        lines.push_back(fmt::format("displacement: {:.3g} px rms expected at {:g} m, gain {:.4g}{}", expected_rms(),
+                                    depth_.far(), gain_, displacer_->mirages() ? ", besides what surfaces move" : ""));
+    if (const double focusing = focusing_variance(); focusing > 0)
         lines.push_back(
             fmt::format("focusing variance at {:g} m: {:.3g} (rays begin to fold near 1)", depth_.far(), focusing));
     return lines;
@@ -178,14 +195,15 @@ Shot::Maps Shot::maps(int frame, const std::vector<double>& offsets, const Pictu
     }
     std::vector<float> mask;
     if (mask_) mask = read_matte(mask_->at(frame), mask_channel_, window, display_, &remarks);
+    const PixelWindow seen = seen_from(window, display_);
     Maps result;
     for (std::size_t k = 0; k < offsets.size(); ++k) {
         DisplacementMap map{window, std::vector<float>(2 * window.area())};
         if (gain_ != 0) {
             const Displacer::Instant instant = displacer_->at(frame + offsets[k], nearest, farthest, gain_);
-            instant.map(window, source, meeting_, map.uv.data());
+            instant.map(seen, source, meeting_, map.uv.data());
             if (state_errors_ && k == offsets.size() / 2)
-                result.error = instant.stated_error(window, source, meeting_, map.uv.data());
+                result.error = instant.stated_error(seen, source, meeting_, map.uv.data());
         }
         for (std::size_t i = 0; i < mask.size(); ++i) {
             map.uv[2 * i] *= mask[i];

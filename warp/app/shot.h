@@ -37,6 +37,8 @@ class Shot {
     const ModelChoice* choice() const { return choice_ ? &*choice_ : nullptr; }
     /// Expected rms of |d| at far(), gain included [px]. Worked out at each call.
     double expected_rms() const { return displacer_->expected_rms(depth_.far()) * gain_; }
+    /// Expected focusing variance at far(), gain included (Displacer::focusing_variance). Worked out at each call.
+    double focusing_variance() const { return displacer_->focusing_variance(depth_.far()) * gain_ * gain_; }
     /// Lines on scene, depth, media and strength.
     std::vector<std::string> notes() const;
     /// Tells on stderr what the user should know before `frames` are made; `verbose`: the notes too.

@@ -1,6 +1,7 @@
 #include "warp/displace/choose_model.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "noise/error.h"
 #include "warp/displace/stated_error.h"
@@ -46,6 +47,7 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
     const double far = settings.far;
     const std::vector<double> distances = one_distance ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
     ModelChoice choice{};
+    double rms = 0;
     for (const auto& [name, model] : kModelNames) {
         settings.model = model;
         std::unique_ptr<Displacer> displacer;
@@ -56,16 +58,26 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
             choice.tried.push_back({model, refusal.what()});
             continue;
         }
-        const double p95 = sampled_p95(*displacer, scene, settings, distances, gain_of(*displacer));
+        const double gain = gain_of(*displacer);
+        const double p95 = sampled_p95(*displacer, scene, settings, distances, gain);
         choice.tried.push_back({model, "", p95});
+        rms = displacer->expected_rms(far) * std::abs(gain);
         if (!choice.displacer || p95 < choice.p95) {
             choice.displacer = std::move(displacer);
             choice.model = model;
             choice.p95 = p95;
         }
         choice.within = choice.p95 <= tolerance;
-        if (choice.within) break;
+        choice.exact = choice.displacer->models().empty();
+        if (choice.within || choice.exact) break;
     }
+    if (choice.within || choice.exact || choice.p95 <= kHopeless * rms) return choice;
+    settings.model.reset();
+    choice.displacer = std::make_unique<Displacer>(scene, settings);
+    for (const auto& [name, model] : kModelNames)
+        if (choice.displacer->models().front() == name) choice.model = model;
+    for (const TriedModel& tried : choice.tried)
+        if (tried.model == choice.model && tried.refusal.empty()) choice.p95 = tried.p95;
     return choice;
 }
 

@@ -5,7 +5,8 @@
 /// kChoiceRows rows of pixels, every one of them for objects at each of the distances far/8, far/4, far/2 and far, or
 /// at far alone where the footage is all at one distance. Each model that applies is tried, cheapest first, and its map
 /// is sampled as stated_error.h says; the first whose 95th percentile is within the tolerance is taken. If none is, it
-/// is the one of the least error.
+/// is the one of the least error or, where even that is off by more than kHopeless of the rms displacement, the
+/// default: no time is spent on what is wrong anyway.
 #pragma once
 
 #include <functional>
@@ -18,6 +19,7 @@
 namespace eikonal {
 
 inline constexpr int kChoiceRows = 4;
+inline constexpr double kHopeless = 0.5;
 
 struct TriedModel {
     Model model;
@@ -30,6 +32,7 @@ struct ModelChoice {
     Model model;
     double p95 = 0;  ///< of the model chosen [px]
     bool within = true;
+    bool exact = false;  ///< nothing to choose: no medium takes a model
     std::vector<TriedModel> tried;
 };
 

@@ -262,6 +262,9 @@ std::vector<std::string> Displacer::models() const {
     for (const MediumLayer& layer : shot_->media.layers()) names.emplace_back(name_of(layer.model));
     return names;
 }
+bool Displacer::mirages() const {
+    return !shot_->media.surfaces().empty();
+}
 Camera Displacer::camera(double frame) const {
     return shot_->path.at(frame);
 }

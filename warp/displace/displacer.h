@@ -87,6 +87,9 @@ class Displacer {
     /// Names of the models in use, in the order of the media.
     std::vector<std::string> models() const;
 
+    /// Whether surfaces bend rays, exactly and by no model.
+    bool mirages() const;
+
     Camera camera(double frame) const;
 
   private:

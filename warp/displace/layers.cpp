@@ -36,8 +36,6 @@ constexpr int kFewestRmsRays = 32;
 constexpr std::size_t kMostPadded = 256 * 256 * 256;
 /// A step in gradient noise is half an inner scale, and at most this part of the finest octave's cell.
 constexpr double kPartOfNoiseCell = 0.75;
-/// Focusing variance from which folding rays are warned of.
-constexpr double kFolding = 0.5;
 
 /// Least padding that keeps a spline's slope to an error relative to its rms, if the lattice affords it: of the scene
 /// alone, so that every machine makes the same picture.
@@ -103,7 +101,7 @@ double MediaLayers::corner_gain(Model model) const {
 void MediaLayers::add_layer(MediumLayer layer) {
     layers_.push_back(std::move(layer));
     const double focusing = focusing_variance(layers_.back(), settings_.far);
-    if (focusing > kFolding)
+    if (focusing > kFolding && !second_order())
         warnings_.push_back(
             fmt::format("medium.{}: focusing variance {:.2g} at {:g} m: rays fold, where any first-order warp is only "
                         "plausible; weaken the medium, shorten the distance, or widen the aperture",
@@ -239,8 +237,8 @@ void MediaLayers::check_steps(std::size_t i, const dvec3& cell) {
     const double most = cells_a_metre(reference_, cell), steps = settings_.far * most;
     if (!(steps > kManySteps)) return;
     const std::string what =
-        fmt::format("medium.{}: first-order takes {:.0f} steps a ray, the path of {:g} m in cells of {:.3g} m", i,
-                    steps, settings_.far, 1 / most);
+        fmt::format("medium.{}: {} takes {:.0f} steps a ray, the path of {:g} m in cells of {:.3g} m", i,
+                    name_of(own(Model::FirstOrder)), steps, settings_.far, 1 / most);
     const std::string remedy = "form=\"screens\", a shorter --far, or a longer period or inner_scale";
     if (steps > kMostFirstOrderSteps)
         throw UserError(fmt::format("{}; allowed are at most {:g}; use {}", what, kMostFirstOrderSteps, remedy));
@@ -266,7 +264,7 @@ Model MediaLayers::choose_model(std::size_t i, const TurbulenceSpec& spec, const
         return spectral_applies ? Model::Spectral : Model::FirstOrder;
     }
     const Model model = *settings_.model;
-    why = "asked for";
+    why = "chosen";
     if (model == Model::Spectral && !spectral_applies)
         throw UserError(
             fmt::format("--model spectral: medium.{} needs an orthographic camera that looks along x, y or z, and a "

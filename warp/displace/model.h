@@ -26,6 +26,9 @@ constexpr std::string_view name_of(Model model) {
     return "";
 }
 
+/// Focusing variance from which folding rays are warned of.
+inline constexpr double kFolding = 0.5;
+
 /// A medium, or the dropped parts of one, that together move no pixel by more than this are left out [px].
 inline constexpr double kNegligibleShift = 0.002;
 /// Largest component of a displacement that a map may hold [px]; what would exceed it is refused, not cut.

@@ -231,9 +231,17 @@ struct MovieReader::State {
 
     AVRational frame_rate() const { return av_guess_frame_rate(input.get(), stream, nullptr); }
 
+    /// When the first frame is shown [s].
+    double start() const {
+        return stream->start_time == AV_NOPTS_VALUE
+                   ? 0
+                   : static_cast<double>(stream->start_time) * av_q2d(stream->time_base);
+    }
+
     /// Length in seconds that the header states for the video, or 0.
     double stated_length() const {
-        if (const double tagged = seconds_of_tag(stream->metadata); tagged > 0) return tagged;
+        // Matroska's tag tells when the last frame ends, on a clock that may have begun before the first
+        if (const double tagged = seconds_of_tag(stream->metadata); tagged > 0) return tagged - std::max(0.0, start());
         const bool stated = input->duration_estimation_method == AVFMT_DURATION_FROM_STREAM;
         if (stated && stream->duration > 0) return static_cast<double>(stream->duration) * av_q2d(stream->time_base);
         if (stated && input->nb_streams == 1 && input->duration > 0)
@@ -244,8 +252,7 @@ struct MovieReader::State {
     /// A movie cut off between two packets just ends; only the length in its header tells.
     void check_length() {
         const double unit = av_q2d(stream->time_base);
-        const double start = stream->start_time == AV_NOPTS_VALUE ? 0 : static_cast<double>(stream->start_time) * unit;
-        const double length = static_cast<double>(end_pts) * unit - start;
+        const double length = static_cast<double>(end_pts) * unit - start();
         const double slack = 2.5 * static_cast<double>(nominal_duration()) * unit;
         const double stated = stated_length();
         if (read_error.empty() && !(stated > length + slack)) return;
@@ -292,6 +299,10 @@ std::optional<std::int64_t> MovieReader::frame_count() const {
     const double count = std::round(state_->stated_length() * fps().value());
     if (count >= 1) return static_cast<std::int64_t>(count);
     return std::nullopt;
+}
+
+bool MovieReader::count_is_exact() const {
+    return state_->stream->nb_frames > 0;
 }
 
 bool MovieReader::next(MovieFrame& frame) {

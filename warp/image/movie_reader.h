@@ -44,6 +44,8 @@ class MovieReader {
     /// As the container states it, or computed from its stated length; nothing if it states neither. For progress and
     /// for checking ranges: what next() returns is the truth.
     std::optional<std::int64_t> frame_count() const;
+    /// Whether the container counts its frames; else frame_count() is an estimate from the length, if any.
+    bool count_is_exact() const;
     /// Degrees clockwise by which players turn the picture: 0, 90, 180 or 270.
     int rotation() const;
     bool interlaced() const;
