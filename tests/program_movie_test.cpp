@@ -79,6 +79,14 @@ TEST_F(MovieTest, MovieToMovieKeepsItsFacts) {
     EXPECT_NE(again.err.find("already there and kept"), std::string::npos);
 }
 
+// ffmpeg begins the video of such a file when the sound's padding is over, and tags it with when it ends.
+TEST_F(MovieTest, MatroskaWhoseVideoBeginsLater) {
+    silent(tool({"ffmpeg", "-v", "error", "-f", "lavfi", "-i", "testsrc2=size=64x48:rate=24:duration=2", "-f", "lavfi",
+                 "-i", "sine=duration=2", "-c:v", "libx264", "-c:a", "aac", "late.mkv"}));
+    silent(warp("late.mkv", "out.mkv"));
+    EXPECT_EQ(facts("out.mkv").frames, "48");
+}
+
 TEST_F(MovieTest, PartsOfAMovie) {
     make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
     silent(warp("a.mp4", "part.mp4", {"--frames", "3-6"}));

@@ -187,6 +187,21 @@ TEST_F(PictureTest, MapsFollowTheContract) {
         }
 }
 
+// The camera looks at the display window, wherever the file puts it.
+TEST_F(PictureTest, AirDoesNotDependOnWhereTheDisplayWindowLies) {
+    ImageSpec spec(kWidth, kHeight, 3, TypeDesc::FLOAT);
+    paint("here.exr", spec, code);
+    spec.x = spec.full_x = 1000;
+    spec.y = spec.full_y = -500;
+    paint("there.exr", spec, code);
+    const Words ground{"--ground", "1.5,40%", "--rms", "0.5", "--displacement", "uv.exr", "--overwrite"};
+    warp("here.exr", "out.exr", ground);
+    const Pixels here = read("uv.exr");
+    warp("there.exr", "out.exr", ground);
+    EXPECT_GT(rms(here), 0.01);
+    EXPECT_EQ(read("uv.exr").values, here.values);
+}
+
 // OpenImageIO knows both of our interpolating filters by name; its t points down, hence flip_t. The contrast is low,
 // where our limit on the rings of highlights (resample.h) does not act.
 TEST_F(PictureTest, OiiotoolMakesOurPictureOfOurStMap) {
