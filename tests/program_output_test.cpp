@@ -80,6 +80,11 @@ TEST_F(OutputTest, Report) {
     report = nlohmann::json::parse(bytes("r.json"));
     EXPECT_EQ(report["frames_kept"], 2);
     EXPECT_TRUE(report["frames"].empty());
+    // an empty file is no finished frame
+    ASSERT_GT(bytes("o.0001.exr").size(), 0U);
+    write_text("o.0001.exr", "");
+    EXPECT_EQ(run(words).status, 0);
+    EXPECT_GT(bytes("o.0001.exr").size(), 0U);
 }
 
 TEST_F(OutputTest, Progress) {

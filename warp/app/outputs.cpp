@@ -41,7 +41,7 @@ void check_format(const std::string& option, const fs::path& path, OutputKind ki
     } else if (is_movie(path) ? !is_movie_name(path) : !can_write_picture(path)) {
         throw UserError(fmt::format(
             "{}: '{}': no format that can be written has the extension '{}'; use .exr, .png, .tif, .jpg, .dpx, "
-            ".mp4, .mov or .mkv",
+            ".mp4, .mov, .mkv, .avi or .webm",
             option, path.string(), extension));
     }
 }
@@ -97,7 +97,8 @@ void Outputs::check(const std::vector<int>& frames, const std::vector<NamedFiles
 bool Outputs::finished(int frame) const {
     std::error_code ignored;
     return std::all_of(outputs_.begin(), outputs_.end(), [&](const Output& o) {
-        return o.kind == OutputKind::Report || fs::is_regular_file(o.at(frame), ignored);
+        return o.kind == OutputKind::Report ||
+               (fs::is_regular_file(o.at(frame), ignored) && fs::file_size(o.at(frame), ignored) > 0);
     });
 }
 

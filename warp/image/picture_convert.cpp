@@ -34,9 +34,6 @@ Format format_for(const fs::path& path) {
     }
     Format format;
     format.name = output->format_name();
-    if (format.name == "gif" || format.name == "term" || format.name == "null")
-        throw FrameError(fmt::format("cannot write '{}': {} is no format for frames; write .png, .exr, .tif or a movie",
-                                     path.string(), path.extension().string()));
     format.windows = format.name == "openexr";  // DPX claims to, but pads
     format.alpha = output->supports("alpha") != 0;
     format.linear_float = format.name == "openexr" || format.name == "hdr";

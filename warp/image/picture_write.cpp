@@ -78,9 +78,12 @@ void write_and_verify(OIIO::ImageOutput& output, const fs::path& temporary, cons
 }  // namespace
 
 bool can_write_picture(const fs::path& path) {
-    const bool known = OIIO::ImageOutput::create(path.string()) != nullptr;
+    const auto output = OIIO::ImageOutput::create(path.string());
     OIIO::geterror();  // clears the thread's message
-    return known;
+    if (!output) return false;
+    // GIF's 256 colours hold no frame of footage, and the others are no files
+    const std::string_view name = output->format_name();
+    return name != "gif" && name != "term" && name != "null";
 }
 
 void write_picture(const fs::path& path, const Picture& picture) {
