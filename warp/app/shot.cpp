@@ -95,11 +95,11 @@ void Shot::tell(const std::vector<int>& frames, bool verbose) {
     warnings_ = displacer_->warnings();
     if (scene_.media.empty()) warnings_.push_back("the scene has no medium: nothing moves");
     if (choice_ && !choice_->within)
-        warnings_.push_back(fmt::format(
-            "--tolerance {:g}: no model stays within it; {}, the best, is off by up to {:.2g} px in 95 of 100 "
-            "sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render follows "
-            "the rays truly",
-            *tolerance_, name_of(choice_->model), choice_->p95, focusing_variance()));
+        warnings_.push_back(
+            fmt::format("--tolerance {:g}: no model stays within it; {} is used, off by up to {:.2g} px in 95 of 100 "
+                        "sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render follows "
+                        "the rays truly",
+                        *tolerance_, name_of(choice_->model), choice_->p95, focusing_variance()));
     const bool first_order =
         displacer_->models().empty() || displacer_->models().front() != name_of(Model::SecondOrder);
     if (std::abs(gain_) > 1 && first_order)

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
 
 #include "noise/dispatch.h"
 #include "warp/displace/layers.h"
@@ -56,7 +58,14 @@ struct Displacer::Instant::State {
     std::vector<std::vector<Band>> blank;  ///< of each that does
     std::vector<Mirage> mirages;
 
+    mutable std::once_flag judged;
+    mutable std::optional<SecondOrderInstant> judge;  ///< of maps; made when first asked for
+
     const std::vector<LayerInstant>& bending() const { return joint.empty() ? own : joint; }
+    const SecondOrderInstant& reference() const {
+        std::call_once(judged, [&] { judge.emplace(media->together(own, camera, t, nearest, farthest, gain, true)); });
+        return *judge;
+    }
     std::vector<Band> tile_bands(const PixelWindow& tile, const PixelWindow& cover) const;
     /// Those that may move a pixel of the window.
     std::span<const Mirage> mirages_on(const PixelWindow& window) const {
@@ -183,7 +192,7 @@ std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window
                                                        DepthMeeting meeting, const float* uv, int samples) const {
     const State& s = *state_;
     const auto* plane = std::get_if<const DepthPlane*>(&depth);
-    const SecondOrderInstant bent = s.media->together(s.own, s.camera, s.t, s.nearest, s.farthest, s.gain, true);
+    const SecondOrderInstant& bent = s.reference();
     return sample_errors(choose_samples(window, depth, uv, samples), [&](const SamplePixel& p) {
         const PixelWindow pixel{p.x, p.y, 1, 1};
         const std::vector<Band> bands{bent_pixel(bent, s.camera, p.x, p.y, plane ? s.farthest : p.depth)};
