@@ -131,7 +131,7 @@ struct BlobProfile {
     float i1, j2, e, g;
 };
 
-inline BlobProfile blob_profile(float a_given, float c_given) {
+[[gnu::always_inline]] inline BlobProfile blob_profile(float a_given, float c_given) {
     using namespace detail;
     const float size_a = magnitude(a_given, kBlobProfileRange), size_c = magnitude(c_given, kBlobProfileRange);
     const float a = with_sign(size_a, a_given), c = with_sign(size_c, c_given);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
@@ -17,7 +18,7 @@ namespace eikonal {
 namespace {
 
 constexpr double kCalm = 1e-12;  ///< rms [m/s] that moves nothing by a millimetre within kLatestTime
-constexpr int kIntervalsAtOnce = 16;
+constexpr int kIntervalsAtOnce = 4;
 constexpr std::size_t kMostCarriedKept = 16;
 constexpr std::size_t kBlobsAtOnce = 32;  ///< least that a thread is given
 
@@ -126,6 +127,22 @@ BlobCloud::BlobCloud(const BlobsSpec& spec, const IndexLaw& law, std::string_vie
     const double fitting = kCarriedBytes / (most_ * sizeof(dvec3));
     recent_ = std::make_unique<const Recent<Carried>>(
         static_cast<std::size_t>(std::clamp(fitting, 1.0, static_cast<double>(kMostCarriedKept))));
+}
+
+std::vector<BlobHome> BlobCloud::homes() const {
+    std::vector<BlobHome> homes;
+    homes.reserve(explicit_.size() + sources_.size());
+    for (const Blob& blob : explicit_) homes.push_back({blob, 0, 1});
+    for (const Source& source : sources_) {
+        const BlobSourceSpec& s = source.spec;
+        const double sigma = std::sqrt(s.sigma * s.sigma + s.growth * s.lifetime);
+        const dvec3 along = 0.5 * (s.to - s.from), risen = 0.5 * s.lifetime * rise_;
+        const double blown = wind_ ? kFastestEddy * wind_->rms() * s.lifetime : 0;
+        homes.push_back({{s.from + along + risen, sigma, law_.above_ambient(s.temperature)},
+                         glm::length(along) + glm::length(risen) + blown,
+                         std::ceil(s.rate * s.lifetime) + 1});
+    }
+    return homes;
 }
 
 Blob BlobCloud::living(const Source& source, double age, const dvec3& center) const {

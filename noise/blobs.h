@@ -41,6 +41,7 @@ inline constexpr double kMostBlobs = 1e6;
 inline constexpr double kBirthPart = 0.05, kFadePart = 0.1;
 inline constexpr double kLatestTime = 1e9;  ///< [s]
 inline constexpr double kCarriedBytes = 64e6;
+inline constexpr double kFastestEddy = 6;
 
 /// What a key of the specification may hold.
 struct BlobKeyRange {
@@ -51,6 +52,13 @@ inline constexpr BlobKeyRange kBlobPlace{-1e12, 1e12, "m"}, kBlobSigma{1e-6, 1e9
     kBlobTemperature{kLeastTemperature, kGreatestTemperature, "K"}, kBlobRate{0, 1e9, "1/s"},
     kBlobCooling{0, 1e300, "1/s"}, kBlobGrowth{0, 1e12, "m²/s"}, kBlobLifetime{1e-6, 1e9, "s"},
     kWindSpeed{0, 1e6, "m/s"}, kWindRise{-1e6, 1e6, "m/s"}, kWindOuterScale{1e-6, 1e9, "m"};
+
+/// Where blobs can be, and what they can be, at any time: for those who ask whether a medium matters to a view.
+struct BlobHome {
+    Blob largest;   ///< the center of the home; the widest sigma and the largest |n| that occur, without exaggeration
+    double radius;  ///< every blob's centre is within [m]
+    double most;    ///< blobs at a time
+};
 
 class BlobCloud {
   public:
@@ -64,6 +72,9 @@ class BlobCloud {
 
     /// Largest number of blobs that `at` can return.
     double most() const { return most_; }
+    /// Of each explicit blob, then of each source that emits any. The wind's eddies are taken to carry no blob faster
+    /// than kFastestEddy rms for all its life.
+    std::vector<BlobHome> homes() const;
 
   private:
     /// Numbers of a source's blobs: first … last, none if last < first.

@@ -121,23 +121,23 @@ EddyField::EddyField(std::uint64_t seed)
                     prefilter[static_cast<std::size_t>(z)]));
 }
 
-EddyInstant EddyField::at(double t) const {
+EddyInstant EddyField::at(double t, EddyWorkspace& room) const {
     const std::size_t modes = filter_.size(), samples = kSize * kSize * kSize;
-    FftScratch<complex32> spectra(3 * modes);
+    room.spectra.resize(3 * modes);
+    room.nodes.resize(3 * samples);
     for (std::size_t c = 0; c < 3; ++c) {
-        const FftVector<complex32> spectrum = potential_[c].spectrum_at(t);
-        complex32* out = spectra.data() + c * modes;
-        for (std::size_t i = 0; i < modes; ++i) out[i] = spectrum[i] * filter_[i];
+        complex32* spectrum = room.spectra.data() + c * modes;
+        potential_[c].spectrum_at(t, spectrum);
+        for (std::size_t i = 0; i < modes; ++i) spectrum[i] *= filter_[i];
     }
-    FftScratch<float> nodes(3 * samples);
-    plan_.execute(spectra.data(), nodes.data());
+    plan_.execute(room.spectra.data(), room.nodes.data());
 
     EddyInstant instant;
     instant.coefficients_ = FftScratch<float>(kWrapped * kWrapped * kWrapped * kLanes);
     float* to = instant.coefficients_.data();
     for (std::size_t i = 0; i < kWrapped; ++i)
         for (std::size_t j = 0; j < kWrapped; ++j) {
-            const float* from = nodes.data() + ((i + kSize - 1) % kSize * kSize + (j + kSize - 1) % kSize) * kSize;
+            const float* from = room.nodes.data() + ((i + kSize - 1) % kSize * kSize + (j + kSize - 1) % kSize) * kSize;
             for (std::size_t l = 0; l < kWrapped; ++l, to += kLanes) {
                 const float* node = from + (l + kSize - 1) % kSize;
                 for (std::size_t c = 0; c < 3; ++c) to[c] = node[c * samples];

@@ -51,13 +51,23 @@ class EddyInstant {
     FftScratch<float> coefficients_;  ///< of the potential, three and a zero a node, wrapped (eddies.cpp)
 };
 
+/// Room to work in, for one thread at a time; many instants in the same room save the pages of fresh memory.
+struct EddyWorkspace {
+    FftScratch<complex32> spectra;
+    FftScratch<float> nodes;
+};
+
 /// Random potential of one wind. Immutable; thread-safe.
 class EddyField {
   public:
     explicit EddyField(std::uint64_t seed);
 
     /// At time t [turnovers], any finite, without the drift.
-    EddyInstant at(double t) const;
+    EddyInstant at(double t, EddyWorkspace& room) const;
+    EddyInstant at(double t) const {
+        EddyWorkspace room;
+        return at(t, room);
+    }
 
   private:
     std::array<LatticeField, 3> potential_;

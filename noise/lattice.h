@@ -93,6 +93,8 @@ class LatticeField {
     /// Spatial spectrum of n - n_ambient at time t [s]: nx × ny × (nz/2 + 1), row-major, Hermitian in its planes
     /// kz = 0 and Nyquist, so that the unnormalised inverse transform gives the node values.
     FftVector<complex32> spectrum_at(double t) const;
+    /// The same into an array of that size.
+    void spectrum_at(double t, complex32* spectrum) const;
     /// The same without the Nyquist modes of space: the n whose gradient is the force.
     FftVector<complex32> bending_spectrum_at(double t) const;
 

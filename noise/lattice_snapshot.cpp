@@ -8,6 +8,8 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <tuple>
+#include <utility>
 
 #include "noise/cubic_taps.h"
 #include "noise/dispatch.h"
@@ -130,6 +132,25 @@ struct Coefficients {
     }
 };
 
+/// Least and largest of n > 0 values, kLanes at a time.
+EIKONAL_CLONES std::pair<float, float> bounds(const float* v, std::size_t n) {
+    constexpr std::size_t kLanes = 16;
+    std::array<float, kLanes> low, high;
+    low.fill(v[0]);
+    high.fill(v[0]);
+    std::size_t i = 0;
+    for (; i + kLanes <= n; i += kLanes)
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            low[lane] = v[i + lane] < low[lane] ? v[i + lane] : low[lane];
+            high[lane] = v[i + lane] > high[lane] ? v[i + lane] : high[lane];
+        }
+    for (; i < n; ++i) {
+        low[0] = std::min(low[0], v[i]);
+        high[0] = std::max(high[0], v[i]);
+    }
+    return {*std::min_element(low.begin(), low.end()), *std::max_element(high.begin(), high.end())};
+}
+
 std::array<int, 3> spatial_size(const LatticeGeometry& g) {
     return {g.size[0], g.size[1], g.size[2]};
 }
@@ -189,27 +210,28 @@ FftVector<complex32> pad_spectrum(const FftVector<complex32>& spectrum, const st
     return out;
 }
 
-PeriodicSpline3::PeriodicSpline3(FftVector<complex32> spectrum, const std::array<int, 3>& size, int padding)
-    : size_{size[0] * padding, size[1] * padding, size[2] * padding} {
-    spectrum = pad_spectrum(spectrum, size, size_);
+PeriodicSpline3::PeriodicSpline3(FftVector<complex32> spectrum, const std::array<int, 3>& size, const Padding& padding)
+    : size_{size[0] * padding[0], size[1] * padding[1], size[2] * padding[2]} {
+    // the spline's own transfer goes before the padding, whose zeros need none
     std::array<std::vector<float>, 3> inverse;
     for (int axis = 0; axis < 3; ++axis)
-        for (int i = 0; i < size_[axis]; ++i)
-            inverse[axis].push_back(static_cast<float>(1 / spline_transfer(static_cast<double>(i) / size_[axis])));
-    const auto half = static_cast<std::size_t>(size_[2] / 2 + 1);
-    tbb::parallel_for(0, size_[0], [&](int ix) {
-        complex32* row = spectrum.data() + static_cast<std::size_t>(ix) * static_cast<std::size_t>(size_[1]) * half;
-        for (int iy = 0; iy < size_[1]; ++iy, row += half) {
+        for (int i = 0; i < size[axis]; ++i) {
+            const int bin = targets(i, size[axis], size_[axis]).bin[0];
+            inverse[axis].push_back(static_cast<float>(1 / spline_transfer(static_cast<double>(bin) / size_[axis])));
+        }
+    const auto half = static_cast<std::size_t>(size[2] / 2 + 1);
+    tbb::parallel_for(0, size[0], [&](int ix) {
+        complex32* row = spectrum.data() + static_cast<std::size_t>(ix) * static_cast<std::size_t>(size[1]) * half;
+        for (int iy = 0; iy < size[1]; ++iy, row += half) {
             const float xy = inverse[0][static_cast<std::size_t>(ix)] * inverse[1][static_cast<std::size_t>(iy)];
             for (std::size_t z = 0; z < half; ++z) row[z] *= xy * inverse[2][z];
         }
     });
+    spectrum = pad_spectrum(spectrum, size, size_);
     const FftPlan plan(FftPlan::Kind::ComplexToReal, size_);
     FftScratch<float> samples(plan.sample_size());
     plan.execute(spectrum.data(), samples.data());
-    const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
-    lower_ = *least;
-    upper_ = *most;
+    std::tie(lower_, upper_) = bounds(samples.data(), samples.size());
     const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]),
                nz = static_cast<std::size_t>(size_[2]);
     coefficients_.resize((nx + kWrap) * (ny + kWrap) * (nz + kWrap));
@@ -312,6 +334,9 @@ double snapshot_slope_error(const LatticeField& field, int padding) {
 }
 
 LatticeSnapshot::LatticeSnapshot(const LatticeField& field, double t, int padding)
+    : LatticeSnapshot(field, t, Padding{padding, padding, padding}) {}
+
+LatticeSnapshot::LatticeSnapshot(const LatticeField& field, double t, const Padding& padding)
     : period_{field.geometry().period[0], field.geometry().period[1], field.geometry().period[2]},
       falloff_(field.spec().falloff),
       spline_(field.bending_spectrum_at(t), spatial_size(field.geometry()), padding) {}

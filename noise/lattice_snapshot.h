@@ -10,11 +10,12 @@
 /// Interpolation error against the trigonometric sum, in rms and relative to the mode, for a mode with τ turns a cell
 /// along an axis: spline_error(τ) for n, spline_slope_error(τ) for its derivative there (both known in closed form and
 /// tested, tests/lattice_test.cpp). `padding` p > 1 evaluates the trigonometric sum on a lattice p times finer first,
-/// which costs p³ in memory and divides τ by p. (τ: n, slope) 1/2: 0.7, 0.7;
+/// which costs p³ in memory and divides τ by p; each axis may have its own. (τ: n, slope) 1/2: 0.7, 0.7;
 /// 3/8: 0.17, 0.23; 1/4: 0.019, 0.04; 1/8: 8e-4, 3e-3; 1/16: 4e-5, 4e-4.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "noise/index_sample.h"
@@ -27,13 +28,16 @@ namespace eikonal {
 FftVector<complex32> pad_spectrum(const FftVector<complex32>& spectrum, const std::array<int, 3>& size,
                                   const std::array<int, 3>& finer);
 
+/// How many times finer than its lattice a spline is, along each axis: >= 1.
+using Padding = std::array<int, 3>;
+
 /// Periodic cubic B-spline in three dimensions with period 1 along each axis. Positions are double; what follows from
 /// the fraction of a cell is single precision (rounding 1e-6 of the largest value). Immutable, thread-safe.
 class PeriodicSpline3 {
   public:
     /// spectrum: half-complex, size[0] × size[1] × (size[2]/2 + 1), Hermitian; the spline passes through its
-    /// unnormalised inverse transform on a lattice `padding` >= 1 times finer.
-    PeriodicSpline3(FftVector<complex32> spectrum, const std::array<int, 3>& size, int padding = 1);
+    /// unnormalised inverse transform on a lattice `padding` times finer.
+    PeriodicSpline3(FftVector<complex32> spectrum, const std::array<int, 3>& size, const Padding& padding = {1, 1, 1});
 
     struct Sample {
         double value;
@@ -74,6 +78,7 @@ class LatticeSnapshot {
   public:
     /// t [s]; padding >= 1 (see above).
     LatticeSnapshot(const LatticeField& field, double t, int padding = 1);
+    LatticeSnapshot(const LatticeField& field, double t, const Padding& padding);
 
     /// At world position x [m]; periodic but for the falloff.
     IndexSample sample(const dvec3& x) const;

@@ -22,7 +22,8 @@ constexpr double kLargestBend = 6, kPartOfCell = 0.5;
 
 /// Where a ray's tangent meets the screen of its slab, and gψ there along the frame's axes.
 struct ScreenForce::Meeting {
-    dvec2 slope;    ///< p⊥/p_z
+    dvec2 slope;    ///< s = p⊥/p_z
+    double length;  ///< L
     double ahead;   ///< w - z
     double factor;  ///< strength/(√L δ)
     dvec2 gradient;
@@ -60,8 +61,9 @@ std::optional<ScreenForce::Meeting> ScreenForce::meet(const dvec3& x, const dvec
     const ScreenSnapshot& screen = screens_[static_cast<std::size_t>(end - ends_.begin()) - 1];
     Meeting m;
     m.slope = dvec2(glm::dot(p, frame_.right), glm::dot(p, frame_.up)) / pz;
+    m.length = length / std::abs(pz);
     m.ahead = screen.w() - z;
-    m.factor = strength_ / (std::sqrt(length / std::abs(pz)) * screen.thickness());
+    m.factor = strength_ / (std::sqrt(m.length) * screen.thickness());
     const dvec3 from = x - frame_.origin;
     const dvec2 q = dvec2(glm::dot(from, frame_.right), glm::dot(from, frame_.up)) + m.ahead * m.slope;
     const PeriodicSpline2::Jet psi = screen.jet(q.x, q.y);
@@ -81,22 +83,34 @@ std::optional<ScreenForce::Meeting> ScreenForce::meet(const dvec3& x, const dvec
 dvec3 ScreenForce::force(const dvec3& x, const dvec3& p) const {
     const std::optional<Meeting> m = meet(x, p);
     if (!m) return dvec3(0);
-    return m->factor * (m->gradient.x * frame_.right + m->gradient.y * frame_.up);
+    const dvec2 bend = slanted_bend(m->slope, m->length, m->gradient);
+    return m->factor * (bend.x * frame_.right + bend.y * frame_.up);
 }
 
 ForceJet ScreenForce::force_jet(const dvec3& x, const dvec3& p) const {
     const std::optional<Meeting> m = meet(x, p);
     if (!m) return {};
     const dvec3 &e1 = frame_.right, &e2 = frame_.up, &e3 = frame_.forward;
-    const dvec3 h = m->gradient.x * e1 + m->gradient.y * e2;
+    const dvec2 &s = m->slope, &g = m->gradient;
+    const double L = m->length, along = glm::dot(s, g), pz = rate(p);
+    const auto in_world = [&](const dvec2& v) { return v.x * e1 + v.y * e2; };
+    const dvec3 h = in_world(slanted_bend(s, L, g));
     // columns of the Hessian, and its product with the slope
-    const dvec3 h1 = m->xx * e1 + m->xy * e2, h2 = m->xy * e1 + m->yy * e2, hs = m->slope.x * h1 + m->slope.y * h2;
-    const double pz = rate(p);
+    const dvec3 h1 = in_world(slanted_bend(s, L, {m->xx, m->xy})), h2 = in_world(slanted_bend(s, L, {m->xy, m->yy}));
+    const dvec3 hs = s.x * h1 + s.y * h2;
     const dmat3 by_meeting = glm::outerProduct(h1, e1) + glm::outerProduct(h2, e2) - glm::outerProduct(hs, e3);
+    // ∂(s (s·g)/(L + 1))/∂s_i, and ∂s_i/∂p = (e_i - s_i e3)/p_z
+    const auto by_slope = [&](int i) {
+        dvec2 d = s * (g[i] - along * s[i] / (L * (L + 1)));
+        d[i] += along;
+        return in_world(d / (L + 1));
+    };
+    const dmat3 by_slant =
+        glm::outerProduct(by_slope(0), (e1 - s.x * e3) / pz) + glm::outerProduct(by_slope(1), (e2 - s.y * e3) / pz);
     // ∂q/∂p is ahead/p_z times ∂q/∂x; ∂ ln(1/√L)/∂p = -(p/|p|² - forward/p_z)/2
     const dvec3 slant = -0.5 * (p / glm::dot(p, p) - e3 / pz);
     return {m->factor * h, m->factor * by_meeting,
-            m->factor * ((m->ahead / pz) * by_meeting + glm::outerProduct(h, slant))};
+            m->factor * ((m->ahead / pz) * by_meeting + glm::outerProduct(h, slant) + by_slant)};
 }
 
 double ScreenForce::longest_step(const dvec3& x, const dvec3&) const {

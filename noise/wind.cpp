@@ -1,5 +1,6 @@
 #include "noise/wind.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace eikonal {
 namespace {
 
-constexpr std::size_t kInstantsKept = 32;  ///< 10 MB
+constexpr std::size_t kInstantsKept = 6;  ///< 1 MB
 
 /// World to lattice: the vertical becomes (1, 1/ρ, 1/ρ²), ρ³ = ρ + 1, the plane's least approximable direction.
 const glm::dmat3& rotation() {
@@ -57,12 +58,13 @@ Wind::Wind(const WindSpec& spec, double longest)
 
 std::vector<WindInterval> Wind::intervals(std::int64_t first, int count) const {
     std::vector<std::shared_ptr<const EddyInstant>> instants(static_cast<std::size_t>(count) + 1);
+    tbb::enumerable_thread_specific<EddyWorkspace> room;
     tbb::parallel_for(std::size_t{0}, instants.size(), [&](std::size_t i) {
         const std::int64_t k = first + static_cast<std::int64_t>(i);
         instants[i] = instants_.latest(k, k).value;
         if (instants[i]) return;
         const double turnovers = static_cast<double>(k) * step_ * (spec_.rms / spec_.outer_scale);
-        instants[i] = std::make_shared<const EddyInstant>(eddies_.at(turnovers));
+        instants[i] = std::make_shared<const EddyInstant>(eddies_.at(turnovers, room.local()));
         instants_.keep(k, instants[i]);
     });
     std::vector<WindInterval> intervals(static_cast<std::size_t>(count));

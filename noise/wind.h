@@ -56,6 +56,8 @@ class Wind {
 
     /// Δ [s].
     double step() const { return step_; }
+    /// Of each component of the eddies [m/s].
+    double rms() const { return spec_.rms; }
     /// `count` intervals from t_first on. Instants that are not at hand are made in parallel.
     std::vector<WindInterval> intervals(std::int64_t first, int count) const;
     /// [m/s]

@@ -4,8 +4,10 @@
 /// layers: the air above the surface is cut into slices of constant index parallel to it, each having the index of its
 /// middle. Rays are straight within a slice; at each boundary Snell's law holds or they are totally reflected. So the
 /// tangential part of p never changes and the normal part follows from p_ν² + |p_t|² = n². Error of order 2 in the
-/// slices' thickness for rays that cross them; of order 1/2 in the height where a ray turns back, as it turns at a
-/// boundary.
+/// slices' thickness for rays that cross them; of order 1/2 for one that turns back, which it does at a boundary,
+/// anywhere in the slice where the bent ray would: that is the worst of many thicknesses, and single ones jump about
+/// below it, so halving the slice need not help (from 0.2 m over asphalt of 305 K and d0 = 1 cm, seen 60 m away: up to
+/// 16 mm off with slices of 16 µm).
 ///
 /// mirror: straight rays, which the surface's plane reflects perfectly at angles below the critical one, where
 /// |p_t| exceeds the index at the surface. Order 0: its error goes with the dropoff. An object closer to that plane

@@ -110,8 +110,7 @@ double Tracer::clear_way() const {
         const double way = lone_->clear_way(state_.x, glm::normalize(state_.p), quiet_turn_, longest_);
         if (way > 0) return way;
     }
-    // Where F is not nothing a medium is, and no need to ask.
-    return force_ == dvec3(0) ? field_.clear_way(state_.x, glm::normalize(state_.p)) : 0;
+    return may_be_clear(force_) ? field_.clear_way(state_.x, glm::normalize(state_.p)) : 0;
 }
 
 /// Takes a step into the ray. True if that ends it at a surface.
@@ -175,7 +174,7 @@ bool Tracer::go_straight(double way) {
     const double remaining = std::min(settings_.far - result_.length, (settings_.u_end - state_.u) * speed);
     ++result_.steps;
     if (way >= remaining) return accept(straight_step(state_, remaining));
-    if (accept(straight_step(state_, way + nudge(way)))) return true;
+    if (accept(straight_step(state_, std::min(way + nudge(way), remaining)))) return true;
     enter(0.5 * way, dvec3(0));
     return false;
 }
@@ -187,7 +186,8 @@ std::optional<BentHit::End> Tracer::go_bent() {
     const dvec3 d = state_.p / speed;
     const double feature =
         adaptive ? field_.longest_stride(state_.x, d, quiet_turn_) : field_.longest_step(state_.x, d);
-    double length = std::min({feature, settings_.far - result_.length, (settings_.u_end - state_.u) * speed});
+    const double remaining = std::min(settings_.far - result_.length, (settings_.u_end - state_.u) * speed);
+    double length = std::min(feature, remaining);
     if (settings_.step > 0) length = std::min(length, settings_.step * (speed / launch_speed_));
     if (adaptive) length = std::min(length, proposed_);
     const double place = same_place(), edge = field_.way_to_edge(state_.x, d);
@@ -197,7 +197,8 @@ std::optional<BentHit::End> Tracer::go_bent() {
         if (edge <= std::max(place, 2 * nudge_) || bend * edge <= kEdgeTurn * feature) {
             ++result_.steps;
             const dvec3 before = force_;
-            if (accept(parabolic_step(state_, force_, (edge + nudge(edge)) / speed))) return End::Surface;
+            const double way = std::min(edge + nudge(edge), remaining);
+            if (accept(parabolic_step(state_, force_, way / speed))) return End::Surface;
             enter(kProbe * feature, before);
             return {};
         }
@@ -234,7 +235,7 @@ std::optional<BentHit::End> Tracer::go_bent() {
 }
 
 BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
-    launch_speed_ = field_.speed(origin);
+    launch_speed_ = settings_.launch_speed(field_, origin);
     state_ = {origin, direction, 0};
     if (!(launch_speed_ > 0)) {
         result_.end = End::NoIndex;

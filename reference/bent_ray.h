@@ -20,6 +20,7 @@
 #pragma once
 
 #include <functional>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -43,6 +44,13 @@ inline constexpr double kFinestTolerance = 1e-13;
 /// What adaptive reaches at its finest in the closed forms of PHYSICS 8 [m, and of p].
 inline constexpr double kClosedFormError = 1e-9;
 
+/// A place that many rays start from, as all of a perspective camera's do.
+struct KnownOrigin {
+    dvec3 place{0, 0, 0};
+    double speed = 0;                ///< FieldInstant::speed there
+    LoneSurface::AtHeight height{};  ///< if there is a lone surface
+};
+
 struct TraceSettings {
     Integrator integrator = Integrator::Adaptive;
     double tolerance_px = 0.01;  ///< of the final displacement [pixels] > 0
@@ -64,6 +72,16 @@ struct TraceSettings {
     /// The field's only medium, if that is a surface: for speed, may be left out. Where all that it can bend a ray by
     /// does not matter adaptive goes straight; first-order takes its closed form.
     std::shared_ptr<const LoneSurface> lone;
+    /// For speed, may be left out.
+    std::optional<KnownOrigin> origin;
+
+    /// From where the rays start: makes `origin` known, `lone` being set if it ever is.
+    void start_at(const FieldInstant& field, const dvec3& place) {
+        origin = {place, field.speed(place), lone ? lone->at(place) : LoneSurface::AtHeight{}};
+    }
+    double launch_speed(const FieldInstant& field, const dvec3& place) const {
+        return origin && origin->place == place ? origin->speed : field.speed(place);
+    }
 };
 
 struct BentHit {
@@ -98,6 +116,13 @@ using StepRecorder = std::function<void(const Step&)>;
 /// (on_surface). Only the four true integrators follow it.
 BentHit trace(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
               const TraceSettings& settings, Bundle* bundle = nullptr, const StepRecorder& recorder = {});
+
+/// Whether it is worth asking for the clear way where F is this [1/m]: anything larger is within a medium's bounds, and
+/// beyond them the tail of one goes on for ever.
+inline bool may_be_clear(const dvec3& force) {
+    constexpr double kTail = 1e-12;
+    return glm::dot(force, force) <= kTail * kTail;
+}
 
 /// How far chords may leave the curve.
 SurfaceSearch::Deviation chord_deviation(const TraceSettings& settings);

@@ -132,14 +132,16 @@ struct Contender {
     }
     /// From one frame to the next.
     void judge_change(const RenderedFrame& truth_before, const RenderedFrame& truth, const ModelFrame& before,
-                      const ModelFrame& now) {
+                      ModelFrame& now) {
+        now.change.assign(truth.id.size(), -1);
         for (std::size_t i = 0; i < truth.id.size(); ++i) {
             if (!answered(truth, i) || !answered(truth_before, i)) continue;
             const auto change = [&](std::size_t axis, const std::vector<float>& t0, const std::vector<float>& t1) {
                 return (double{now.uv[2 * i + axis]} - before.uv[2 * i + axis]) - (double{t1[i]} - t0[i]);
             };
-            temporal.push_back(
-                static_cast<float>(length(change(0, truth_before.u, truth.u), change(1, truth_before.v, truth.v))));
+            now.change[i] =
+                static_cast<float>(length(change(0, truth_before.u, truth.u), change(1, truth_before.v, truth.v)));
+            temporal.push_back(now.change[i]);
         }
     }
     ModelResult summary() const {

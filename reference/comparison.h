@@ -48,6 +48,7 @@ struct CompareSettings {
 struct ModelFrame {
     std::vector<float> uv;      ///< interleaved [px]
     std::vector<float> error;   ///< |d - d_true| [px]; negative where there is no true answer
+    std::vector<float> change;  ///< |Δd - Δd_true| since the frame before, as `error`; of the first frame: empty
     std::vector<float> warped;  ///< R G B A, linear
 };
 

@@ -34,14 +34,18 @@ select{font:inherit;color:inherit;background:var(--card);border:1px solid var(--
 .slider input{position:absolute;inset:0;width:100%;height:100%;margin:0;opacity:0;cursor:ew-resize}
 .slider:focus-within{outline:3px solid var(--mark);outline-offset:3px}
 .wide{overflow-x:auto}
-table{border-collapse:collapse;font-size:14px;line-height:1.35;width:100%}
-th,td{text-align:right;padding:7px 8px;white-space:nowrap;border-bottom:1px solid var(--line)}
+table{border-collapse:collapse;font-size:13.5px;line-height:1.35;width:100%}
+th,td{text-align:right;padding:7px 7px;white-space:nowrap;border-bottom:1px solid var(--line)}
 th{font-weight:500;color:var(--soft)}
 th:first-child,td:first-child{text-align:left;padding-left:0}
-.groups th{text-align:left;color:var(--ink);border-bottom:0;padding-bottom:0}
+.groups th{text-align:left;white-space:normal;vertical-align:bottom;color:var(--ink);border-bottom:0;padding-bottom:0}
 .first{border-left:1px solid var(--line)}
 .best td:first-child{color:var(--mark);font-weight:600}
 .plot{display:block;width:100%;height:auto;border:1px solid var(--line);border-radius:6px}
+button{font:inherit;color:inherit;background:var(--card);border:1px solid var(--line);border-radius:6px;padding:5px 14px;cursor:pointer}
+.frame{display:flex;gap:10px;align-items:center}
+.frame output{min-width:4ch}
+.pictures[hidden]{display:none}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:26px 22px}
 figure{margin:0}
 figure .crop{overflow:hidden;border-radius:4px;background:#000}
@@ -55,18 +59,33 @@ li{margin-bottom:6px}
 
 constexpr const char* kScript = R"(
 const slider = document.querySelector('.slider'), range = slider.querySelector('input');
+const frames = [...document.querySelectorAll('.pictures')], choices = [...document.querySelectorAll('.frame input')];
 const sides = [['left', '.over img'], ['right', '.under img']];
+let at = 0, playing;
 function show() {
   slider.style.setProperty('--at', range.value / 10 + '%');
+  frames.forEach((frame, i) => frame.hidden = i != at);
+  for (const choice of choices) {
+    choice.value = at;
+    choice.nextElementSibling.value = frames[at].dataset.frame;
+  }
   for (const [name, place] of sides) {
-    const from = document.getElementById(document.getElementById(name).value);
+    const wanted = document.getElementById(name).value;
+    const from = [...frames[at].querySelectorAll('img')].find(img => img.alt == wanted);
     const to = slider.querySelector(place);
-    to.src = from.src;
-    to.alt = from.alt;
+    to.style.visibility = from ? 'visible' : 'hidden';
+    if (from) to.src = from.src;
+    to.alt = wanted;
   }
 }
 range.addEventListener('input', show);
 for (const [name] of sides) document.getElementById(name).addEventListener('change', show);
+for (const choice of choices) choice.addEventListener('input', () => { at = Number(choice.value); show(); });
+for (const button of document.querySelectorAll('.frame button')) button.addEventListener('click', () => {
+  if (playing) clearInterval(playing);
+  playing = playing ? 0 : setInterval(() => { at = (at + 1) % frames.length; show(); }, 200);
+  for (const b of document.querySelectorAll('.frame button')) b.textContent = playing ? 'stop' : 'play';
+});
 show();
 )";
 
@@ -110,26 +129,37 @@ std::string choice(const std::vector<PagePicture>& pictures, std::string_view na
                    std::size_t chosen) {
     std::string options;
     for (std::size_t i = 0; i < pictures.size(); ++i)
-        options += fmt::format("<option value=\"picture{}\"{}>{}</option>", i,
-                               i == chosen ? " selected=\"selected\"" : "", escaped(pictures[i].label));
+        options += fmt::format("<option{}>{}</option>", i == chosen ? " selected=\"selected\"" : "",
+                               escaped(pictures[i].label));
     return fmt::format("<label>{}<select id=\"{}\">{}</select></label>\n", label, name, options);
 }
 
-std::string slider(const Comparison& c, const std::vector<PagePicture>& pictures) {
+/// Which frame is shown; nothing where there is one only.
+std::string frame_choice(const std::vector<PageFrame>& frames) {
+    if (frames.size() < 2) return "";
+    return fmt::format(
+        "<span class=\"frame\">frame <input type=\"range\" min=\"0\" max=\"{}\" value=\"0\" aria-label=\"frame\" />"
+        "<output>{}</output><button type=\"button\">play</button></span>\n",
+        frames.size() - 1, frames.front().number);
+}
+
+std::string slider(const Comparison& c, const std::vector<PageFrame>& frames) {
+    const std::vector<PagePicture>& pictures = frames.back().pictures;  // which lack nothing
     std::size_t right = std::min<std::size_t>(1, pictures.size() - 1);
     for (std::size_t i = 0; i < pictures.size(); ++i)
         if (pictures[i].is_default) right = i;
     return fmt::format(
-        "<div class=\"controls\">\n{}{}</div>\n"
+        "<div class=\"controls\">\n{}{}{}</div>\n"
         "<div class=\"slider\" style=\"aspect-ratio:{}/{};--at:50%\">\n"
         "<div class=\"under\" style=\"height:100%\"><img alt=\"\" /></div><div class=\"over\"><img alt=\"\" /></div>"
         "<div class=\"bar\"></div>\n"
         "<input type=\"range\" min=\"0\" max=\"1000\" value=\"500\" aria-label=\"how much of the left picture is "
         "seen\" />\n</div>\n",
-        choice(pictures, "left", "left", 0), choice(pictures, "right", "right", right), c.width, c.height);
+        choice(pictures, "left", "left", 0), choice(pictures, "right", "right", right), frame_choice(frames), c.width,
+        c.height);
 }
 
-std::string figure(const Comparison& c, const PagePicture& picture, std::size_t i) {
+std::string figure(const Comparison& c, const PagePicture& picture) {
     std::string scale;
     if (picture.scale_end > 0)
         scale = fmt::format(
@@ -137,9 +167,21 @@ std::string figure(const Comparison& c, const PagePicture& picture, std::size_t 
             "<span>{:.4g} px</span></div>",
             heat_gradient(), picture.scale_end / 2, picture.scale_end);
     return fmt::format(
-        "<figure><div class=\"crop\" style=\"aspect-ratio:{}/{}\"><img id=\"picture{}\" alt=\"{}\" src=\"{}\" /></div>"
+        "<figure><div class=\"crop\" style=\"aspect-ratio:{}/{}\"><img alt=\"{}\" src=\"{}\" /></div>"
         "{}<figcaption>{}</figcaption></figure>\n",
-        c.width, c.height, i, escaped(picture.label), source(picture), scale, escaped(picture.label));
+        c.width, c.height, escaped(picture.label), source(picture), scale, escaped(picture.label));
+}
+
+/// Every frame's pictures; all but the first frame's are hidden.
+std::string gallery(const Comparison& c, const std::vector<PageFrame>& frames) {
+    std::string list;
+    for (const PageFrame& frame : frames) {
+        list += fmt::format("<div class=\"pictures\" data-frame=\"{}\"{}>\n", frame.number,
+                            &frame == &frames.front() ? "" : " hidden=\"hidden\"");
+        for (const PagePicture& picture : frame.pictures) list += figure(c, picture);
+        list += "</div>\n";
+    }
+    return list;
 }
 
 std::string refusals(const Comparison& c) {
@@ -159,14 +201,15 @@ std::string method(const Comparison& c) {
         "a jump of depth by more than {:g} %, and what lies within {} px of it, or within its true "
         "displacement if that is more.</p>\n"
         "<p>Pictures are compared as shown: PSNR and SSIM of sRGB codes; <i>visible</i> is the part of the pixels that "
-        "an eye tells apart (Yee). Times are this machine’s wall times on all threads; <i>times faster</i> is against "
+        "an eye tells apart (ΔE*ab above {:g} after its own blur). Times are this machine’s wall times on all threads; "
+        "<i>times faster</i> is against "
         "the "
         "{} tracer’s picture with {} rays a pixel, in the same run. Memory is by how "
         "much "
         "the resident memory of the process grew at its highest while a model’s shot and first map were made.</p>\n"
         "<p>Rows in colour are the efficient ones: no other model, nor the plate itself, is both quicker and more "
         "exact (p95).{}</p>\n",
-        100 * kSilhouetteJump, kSilhouetteReach, c.integrator, c.samples,
+        100 * kSilhouetteJump, kSilhouetteReach, kJustVisible, c.integrator, c.samples,
         c.over_time() ? " <i>From frame to frame</i> is the error of each pixel’s change of displacement between "
                         "consecutive frames: flicker, which the eye sees first."
                       : "");
@@ -195,12 +238,21 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-std::string comparison_page(const Comparison& c, const std::vector<PagePicture>& pictures, int frame) {
-    std::string list, gallery;
+bool on_page(std::size_t i, std::size_t count) {
+    if (count <= kMostPageFrames) return true;
+    // frame k of the page is the shot's k (count - 1)/(kMostPageFrames - 1)
+    const std::size_t k = (i * (kMostPageFrames - 1) + count - 2) / (count - 1);
+    return k * (count - 1) / (kMostPageFrames - 1) == i;
+}
+
+std::string comparison_page(const Comparison& c, const std::vector<PageFrame>& frames) {
+    std::string list;
     for (const Fact& fact : facts(c))
         list += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(fact.label), escaped(fact.text));
-    for (std::size_t i = 0; i < pictures.size(); ++i) gallery += figure(c, pictures[i], i);
     const std::string name = escaped(c.scene);
+    const std::string number = frames.size() == 1 ? fmt::format(", frame {}", frames.front().number) : "";
+    const std::string again =
+        frames.size() == 1 ? "" : "<div class=\"controls\">\n" + frame_choice(frames) + "</div>\n";
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\" "
         "/>\n"
@@ -208,12 +260,12 @@ std::string comparison_page(const Comparison& c, const std::vector<PagePicture>&
         "tracer</title>\n"
         "<style>{1}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n"
         "<p class=\"lead\">Heat shimmer by every model that this scene suits, held against true bent rays.</p>\n"
-        "<dl>\n{2}</dl>\n<h2>Before and after, frame {3}</h2>\n{4}<h2>Error and cost</h2>\n{5}"
-        "<h2>What an error costs</h2>\n{6}<h2>Pictures, frame {3}</h2>\n<div class=\"pictures\">\n{7}</div>\n{8}"
-        "{9}<details><summary>All "
-        "figures</summary>\n{10}</details>\n</main>\n<script>{11}</script>\n</body>\n</html>\n",
-        name, kStyle, list, frame, slider(c, pictures), table(c, true), frontier_svg(c), gallery, refusals(c),
-        method(c), table(c, false), kScript);
+        "<dl>\n{2}</dl>\n<h2>Before and after{3}</h2>\n{4}<h2>Error and cost</h2>\n{5}"
+        "<h2>What an error costs</h2>\n{6}<h2>Pictures{3}</h2>\n{7}{8}{9}"
+        "{10}<details><summary>All "
+        "figures</summary>\n{11}</details>\n</main>\n<script>{12}</script>\n</body>\n</html>\n",
+        name, kStyle, list, number, slider(c, frames), table(c, true), frontier_svg(c), again, gallery(c, frames),
+        refusals(c), method(c), table(c, false), kScript);
 }
 
 }  // namespace eikonal::reference

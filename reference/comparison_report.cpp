@@ -47,6 +47,11 @@ std::vector<PagePicture> write_pictures(const std::filesystem::path& folder, con
     const auto file = [&](const std::string& name) { return folder / fmt::format("{}.{:04}.png", name, frame.number); };
     const auto shown = [&](const std::vector<float>& rgba) { return image_of(rgba, c.width, c.height); };
     std::vector<PagePicture> pictures;
+    const auto add_heat = [&](const std::string& name, const std::string& label, const std::vector<float>& error) {
+        const double end = fitting_scale(error);
+        pictures.push_back(write_png(file(name), label, heat_map(error, c.width, c.height, end)));
+        pictures.back().scale_end = end;
+    };
     pictures.push_back(write_png(file("plate"), "plate", shown(frame.plate.color)));
     pictures.push_back(write_png(file("truth"), "truth", shown(frame.truth.color)));
     for (std::size_t m = 0; m < c.models.size(); ++m) {
@@ -58,22 +63,21 @@ std::vector<PagePicture> write_pictures(const std::filesystem::path& folder, con
                 write_png(file("warp-" + model.name), "warp: " + row_name(model), shown(frame.models[m].warped)));
             pictures.back().is_default = model.is_default;
         }
-        const std::vector<float>& error = frame.models[m].error;
-        const double end = fitting_scale(error);
         // the plate's own error is the true displacement
-        pictures.push_back(write_png(file("error-" + model.name),
-                                     warps ? "error: " + row_name(model) : "true displacement",
-                                     heat_map(error, c.width, c.height, end)));
-        pictures.back().scale_end = end;
+        add_heat("error-" + model.name, warps ? "error: " + row_name(model) : "true displacement",
+                 frame.models[m].error);
+        if (!frame.models[m].change.empty())
+            add_heat("change-" + model.name, warps ? "error of the change: " + row_name(model) : "true change",
+                     frame.models[m].change);
     }
     return pictures;
 }
 
-void write_report(const std::filesystem::path& folder, const Comparison& c, const std::vector<PagePicture>& pictures) {
+void write_report(const std::filesystem::path& folder, const Comparison& c, const std::vector<PageFrame>& frames) {
     write_text_file(folder / "errors.csv", table_csv(c));
     write_text_file(folder / "errors.txt", table_text(c));
     write_text_file(folder / "frontier.svg", frontier_svg(c));
-    write_text_file(folder / "index.html", comparison_page(c, pictures, c.frames.front()));
+    write_text_file(folder / "index.html", comparison_page(c, frames));
 }
 
 }  // namespace eikonal::reference

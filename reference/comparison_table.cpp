@@ -24,7 +24,7 @@ void add_errors(std::vector<Column>& list, ColumnGroup group, const std::string&
         [](const Comparison&, const ModelResult& m) { return (m.*set).count > 0 ? Value((m.*set).p50) : Value(); });
     add("p95", "p95 px", brief,
         [](const Comparison&, const ModelResult& m) { return (m.*set).count > 0 ? Value((m.*set).p95) : Value(); });
-    add("p99", "p99 px", brief,
+    add("p99", "p99 px", brief && group == ColumnGroup::All,
         [](const Comparison&, const ModelResult& m) { return (m.*set).count > 0 ? Value((m.*set).p99) : Value(); });
     add("max", "max px", false,
         [](const Comparison&, const ModelResult& m) { return (m.*set).count > 0 ? Value((m.*set).largest) : Value(); });

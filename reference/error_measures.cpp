@@ -1,8 +1,5 @@
 #include "reference/error_measures.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,12 +26,12 @@ Plane luma(std::span<const float> rgba) {
     return plane;
 }
 
-/// Weighted mean around each pixel, Gaussian, edge pixels repeated.
-Plane blurred(const Plane& in, int width, int height) {
+/// Weighted mean around each pixel, Gaussian of a standard deviation [px] up to kSsimSigma, edge pixels repeated.
+Plane blurred(const Plane& in, int width, int height, double sigma) {
     std::array<double, 2 * kSsimRadius + 1> weights{};
     double sum = 0;
     for (int k = -kSsimRadius; k <= kSsimRadius; ++k)
-        sum += weights[static_cast<std::size_t>(k + kSsimRadius)] = std::exp(-k * k / (2 * kSsimSigma * kSsimSigma));
+        sum += weights[static_cast<std::size_t>(k + kSsimRadius)] = std::exp(-k * k / (2 * sigma * sigma));
     for (double& w : weights) w /= sum;
     const auto pass = [&](const Plane& from, bool rows) {
         Plane to(from.size());
@@ -61,7 +58,7 @@ double ssim(const Plane& a, const Plane& b, int width, int height) {
         std::transform(p.begin(), p.end(), q.begin(), result.begin(), std::multiplies<>());
         return result;
     };
-    const auto blur = [&](const Plane& plane) { return blurred(plane, width, height); };
+    const auto blur = [&](const Plane& plane) { return blurred(plane, width, height, kSsimSigma); };
     const Plane mean_a = blur(a), mean_b = blur(b), aa = blur(products(a, a)), bb = blur(products(b, b)),
                 ab = blur(products(a, b));
     double sum = 0;
@@ -85,18 +82,36 @@ double psnr(std::span<const float> a, std::span<const float> b) {
     return -10 * std::log10(sum / (0.75 * static_cast<double>(a.size())));
 }
 
-OIIO::ImageBuf as_shown(std::span<const float> rgba, int width, int height) {
-    OIIO::ImageBuf image(OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT));
-    auto* out = static_cast<float*>(image.localpixels());
-    for (std::size_t i = 0; i < rgba.size() / 4; ++i)
-        for (std::size_t c = 0; c < 3; ++c) out[3 * i + c] = limited(rgba[4 * i + c]);
-    return image;
+/// L*, a*, b* of what reaches the eye.
+std::array<Plane, 3> seen_colours(std::span<const float> rgba, int width, int height) {
+    std::array<Plane, 3> light;
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t i = c; i < rgba.size(); i += 4) light[c].push_back(limited(rgba[i]));
+        light[c] = blurred(light[c], width, height, kEyeSigma);
+    }
+    // CIE 1976, relative to the white of sRGB
+    const auto root = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
+    for (std::size_t i = 0; i < light[0].size(); ++i) {
+        const double r = light[0][i], g = light[1][i], b = light[2][i];
+        const double x = root((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
+        const double y = root(0.2126 * r + 0.7152 * g + 0.0722 * b);
+        const double z = root((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.0890);
+        light[0][i] = 116 * y - 16;
+        light[1][i] = 500 * (x - y);
+        light[2][i] = 200 * (y - z);
+    }
+    return light;
 }
 
 double visible(std::span<const float> a, std::span<const float> b, int width, int height) {
-    OIIO::ImageBufAlgo::CompareResults unused;
-    const int pixels = OIIO::ImageBufAlgo::compare_Yee(as_shown(a, width, height), as_shown(b, width, height), unused);
-    return pixels / (0.25 * static_cast<double>(a.size()));
+    const std::array<Plane, 3> p = seen_colours(a, width, height), q = seen_colours(b, width, height);
+    double count = 0;
+    for (std::size_t i = 0; i < p[0].size(); ++i) {
+        double square = 0;
+        for (std::size_t c = 0; c < 3; ++c) square += (p[c][i] - q[c][i]) * (p[c][i] - q[c][i]);
+        count += square > kJustVisible * kJustVisible ? 1 : 0;
+    }
+    return count / static_cast<double>(p[0].size());
 }
 
 /// Whether a silhouette passes between the second and the third of four neighbours in a row.

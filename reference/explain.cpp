@@ -3,40 +3,35 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 
 namespace eikonal::reference {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-struct Probe {
-    double pixels = 0, seconds = 0;
-    double steps = 0, error = 0, rms = 0, largest = 0;  ///< means, but for the last
-    double unanswered = 0;
+struct Figures {
+    double steps = 0, error = 0, rms = 0;  ///< means
+    double largest = 0;
 };
 
-Probe measure(const Renderer& renderer, int frame) {
-    Probe p;
-    const auto start = Clock::now();
-    const RenderedFrame f = renderer.probe(frame, std::max(1, renderer.tile_count() / kExplainedTiles));
-    p.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    for (std::size_t i = 0; i < f.depth.size(); ++i) {
-        if (f.depth[i] == 0) continue;
-        ++p.pixels;
-        if (f.u.empty()) continue;
+Figures figures(const RenderedFrame& f) {
+    Figures r;
+    for (std::size_t i = 0; i < f.u.size(); ++i) {
         const double d2 = double{f.u[i]} * f.u[i] + double{f.v[i]} * f.v[i];
-        p.steps += f.steps[i];
-        p.error += f.error[i];
-        p.rms += d2;
-        p.largest = std::max(p.largest, std::sqrt(d2));
-        if (f.id[i] < 0) ++p.unanswered;
+        r.steps += f.steps[i];
+        r.error += f.error[i];
+        r.rms += d2;
+        r.largest = std::max(r.largest, std::sqrt(d2));
     }
-    p.steps /= p.pixels;
-    p.error /= p.pixels;
-    p.rms = std::sqrt(p.rms / p.pixels);
-    return p;
+    r.steps /= f.width;
+    r.error /= f.width;
+    r.rms = std::sqrt(r.rms / f.width);
+    return r;
+}
+
+/// "2.5", or "2.5 to 80" where what is known leaves that open.
+std::string between(double low, double high) {
+    return high > 1.01 * low ? fmt::format("{:.3g} to {:.3g}", low, high) : fmt::format("{:.3g}", low);
 }
 
 }  // namespace
@@ -54,19 +49,40 @@ void explain(const Renderer& renderer, const Scene& scene, const RenderSettings&
     else if (scene.media.empty())
         fmt::print("air: the scene has no medium, nothing bends\n");
     for (const std::string& note : renderer.notes()) fmt::print("{}\n", note);
-    const Probe p = measure(renderer, frames.front());
+    ProbeLimits limits;
+    limits.first = 16;
+    limits.most = static_cast<int>(std::min<double>(kMostExplained, std::max<double>(area, limits.first)));
+    limits.seconds = kExplainedSeconds;
+    limits.samples = kExplainedSamples;
+    const Probe p = renderer.probe(frames.front(), limits);
+    const int budget = settings.rays.budget();
     if (!settings.straight) {
-        fmt::print("rays: {}, tolerance {:g} px; {:.3g} steps each, {:.2g} % end without an answer\n",
-                   name_of(settings.rays.integrator), settings.rays.tolerance_px, p.steps,
-                   100 * p.unanswered / p.pixels);
-        fmt::print("displacement: {:.3g} px rms, {:.3g} px at most, in {:.0f} pixels of frame {}\n", p.rms, p.largest,
-                   p.pixels, frames.front());
-        fmt::print("error: {:.2g} px on average, as the rays estimate it\n", p.error);
+        const Figures f = figures(p.pixels);
+        fmt::print("rays: {}, tolerance {:g} px; {:.3g} steps each\n", name_of(settings.rays.integrator),
+                   settings.rays.tolerance_px, f.steps);
+        if (const std::size_t n = p.pixels.trapped())
+            fmt::print(
+                "rays: {} of {} tried did not end within {} steps: they are trapped, curl up, or have a long "
+                "way to go; --step-budget ends them at {}\n",
+                n, p.pixels.width, p.step_limit, budget);
+        if (const std::size_t n = p.pixels.without_index())
+            fmt::print("rays: {} of {} tried came to where n <= 0\n", n, p.pixels.width);
+        fmt::print("displacement: {:.3g} px rms, {:.3g} px at most, in {} pixels of frame {}\n", f.rms, f.largest,
+                   p.pixels.width, frames.front());
+        fmt::print("error: {:.2g} px on average, as the rays estimate it\n", f.error);
     }
-    const double frame_seconds = p.seconds * area / p.pixels;
-    fmt::print("time: about {:.3g} s a frame on {} thread{} ({:.3g} µs of processor time a pixel), {:.3g} s in all\n",
-               frame_seconds, threads, threads == 1 ? "" : "s", 1e6 * threads * p.seconds / p.pixels,
-               frame_seconds * static_cast<double>(frames.size()));
+    const auto frame_seconds = [&](double pixels) {
+        std::array<double, 2> time = p.time(pixels, settings.samples, budget);
+        for (double& t : time) t += p.setup;
+        return time;
+    };
+    const auto [low, high] = frame_seconds(area);
+    const auto [least, most] = p.time(1, settings.samples, budget);
+    const auto count = static_cast<double>(frames.size());
+    fmt::print("time: about {} s a frame on {} thread{} ({} µs of processor time a pixel), {} s in all{}\n",
+               between(low, high), threads, threads == 1 ? "" : "s",
+               between(1e6 * threads * least, 1e6 * threads * most), between(count * low, count * high),
+               settings.light_rays > 0 ? ", and what --light-rays take" : "");
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     fmt::print("memory: {:.0f} MB\n", static_cast<double>(usage.ru_maxrss) / 1e3);

@@ -1,7 +1,10 @@
 /// `render --explain`: what frames need, before any is rendered. Nothing is written.
 ///
-/// Displacement, steps, error and time are of a probe: about kExplainedTiles tiles, spread over the first frame. The
-/// times are this machine's, now; memory is what the process has come to hold, and what a frame's planes take.
+/// Displacement, steps, error and time are of a probe (ProbeLimits in render.h): pixels spread over the first frame, as
+/// many as kExplainedSeconds suffice for, up to kMostExplained. So it takes seconds whatever the scene: rays that do
+/// not end within the probe's steps are counted, and the time is then given from where they end at once to where they
+/// use up their budget. The times are this machine's, now; memory is what the process has come to hold, and what a
+/// frame's planes take.
 #pragma once
 
 #include <vector>
@@ -10,7 +13,8 @@
 
 namespace eikonal::reference {
 
-inline constexpr int kExplainedTiles = 8;
+inline constexpr double kExplainedSeconds = 2;
+inline constexpr int kMostExplained = 8192, kExplainedSamples = 16;
 
 /// Prints it on stdout. threads: in use. FrameError as Renderer::render.
 void explain(const Renderer& renderer, const Scene& scene, const RenderSettings& settings,

@@ -47,45 +47,94 @@ std::string line(double x1, double y1, double x2, double y2, const char* kind) {
     return fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' class='{}'/>\n", x1, y1, x2, y2, kind);
 }
 
+/// Where a label may begin: left end of its baseline.
+struct Start {
+    double x, y;
+};
+
 /// Labels that keep out of each other's way, and of the points.
 class Labels {
   public:
     void avoid(double x, double y) { taken_.push_back({x - 7, y - 7, x + 7, y + 7}); }
-    /// A label beside (x, y), where there is room.
-    std::string place(double x, double y, const std::string& kind, const std::string& words) {
-        const double width = kLetter * static_cast<double>(words.size());
-        const std::array<std::array<double, 2>, 8> offsets{{{11, 5},
-                                                            {-11 - width, 5},
-                                                            {-width / 2, -12},
-                                                            {-width / 2, 22},
-                                                            {9, -9},
-                                                            {9, 19},
-                                                            {-9 - width, -9},
-                                                            {-9 - width, 19}}};
-        for (const auto& [dx, dy] : offsets) {
-            const Box box{x + dx, y + dy - kLine + 4, x + dx + width, y + dy + 4};
-            if (box.x0 < kLeft || box.x1 > kWidth - kRight || box.y0 < kTop || box.y1 > kHeight - kBottom) continue;
-            if (std::any_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.meets(other); })) continue;
-            taken_.push_back(box);
-            return text(box.x0, y + dy, "start", kind, words);
-        }
-        return text(x + offsets[0][0], y + offsets[0][1], "start", kind, words);
+    /// A label at the first of the starts where there is room, or else at the last.
+    std::string place(const std::vector<Start>& starts, const char* kind, const std::string& words) {
+        const auto free = [&](const Start& s) {
+            const Box box = box_of(s, words);
+            return box.x0 >= kLeft && box.x1 <= kWidth - kRight && box.y0 >= kTop && box.y1 <= kHeight - kBottom &&
+                   std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.meets(other); });
+        };
+        const auto found = std::find_if(starts.begin(), starts.end(), free);
+        const Start start = found != starts.end() ? *found : starts.back();
+        taken_.push_back(box_of(start, words));
+        return text(start.x, start.y, "start", kind, words);
     }
+    /// A label beside a point: to its right, its left, above, below; then rows further off.
+    std::string beside(double x, double y, const char* kind, const std::string& words) {
+        constexpr int kRows = 6;
+        const double width = width_of(words);
+        std::vector<Start> starts{
+            {x + 11, y + 5}, {x - 11 - width, y + 5}, {x - width / 2, y - 11}, {x - width / 2, y + 22}};
+        for (int row = 1; row <= kRows; ++row)
+            for (const double side : {-kLine, kLine})
+                for (const double left : {x + 11, x - 11 - width}) starts.push_back({left, y + 5 + row * side});
+        return place(starts, kind, words);
+    }
+    static double width_of(const std::string& words) { return kLetter * static_cast<double>(words.size()); }
 
   private:
     struct Box {
         double x0, y0, x1, y1;
         bool meets(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
     };
+    static Box box_of(const Start& s, const std::string& words) {
+        return {s.x, s.y - kLine + 4, s.x + width_of(words), s.y + 4};
+    }
     std::vector<Box> taken_;
 };
 
 /// All rules begin with .plot, so that they touch nothing else of a page that the drawing stands in.
 constexpr const char* kStyle =
-    "<style>.plot text{font:13px ui-sans-serif,system-ui,sans-serif;fill:#3d4248}.plot .quiet{fill:#7a8087;"
+    "<style>.plot text{font:13px "
+    "ui-sans-serif,system-ui,sans-serif;fill:#3d4248;paint-order:stroke;stroke:#fff;stroke-width:3px}.plot "
+    ".quiet{fill:#7a8087;"
     "font-size:12px}.plot .strong{font-weight:600;fill:#b3401e}.plot .grid{stroke:#e4e2dc}.plot .mark{stroke:#8d939a;"
     "stroke-dasharray:2 4}.plot .frontier{fill:none;stroke:#b3401e;stroke-width:2}.plot .other{fill:#fff;"
     "stroke:#3d4248;stroke-width:1.6}.plot .best{fill:#b3401e}</style>\n";
+
+/// Decades and what the axes are.
+std::string grid(const Axis& x, const Axis& y) {
+    std::string svg;
+    for (double e = x.low; e <= x.high; ++e) {
+        const double px = x.at(std::pow(10, e));
+        svg += line(px, kTop, px, kHeight - kBottom, "grid") +
+               text(px, kHeight - kBottom + 20, "middle", "quiet", tick(e));
+    }
+    for (double e = y.low; e <= y.high; ++e) {
+        const double py = y.at(std::pow(10, e));
+        svg += line(kLeft, py, kWidth - kRight, py, "grid") + text(kLeft - 10, py + 4, "end", "quiet", tick(e));
+    }
+    svg += text((kLeft + kWidth - kRight) / 2, kHeight - 14, "middle", "axis", "time of a frame, map and warp [ms]");
+    svg += fmt::format(
+        "<text x='20' y='{0:g}' text-anchor='middle' transform='rotate(-90 20 {0:g})'>p95 error of the displacement "
+        "[px]</text>\n",
+        (kTop + kHeight - kBottom) / 2);
+    return svg;
+}
+
+/// Vertical and horizontal marks with their names, anywhere along them.
+std::string tracer_mark(Labels& labels, double px) {
+    const std::string name = "the tracer";
+    std::vector<Start> starts;
+    for (double py = kTop + 16; py < kHeight - kBottom; py += kLine)
+        for (const double left : {px - 6 - Labels::width_of(name), px + 6}) starts.push_back({left, py});
+    return line(px, kTop, px, kHeight - kBottom, "mark") + labels.place(starts, "quiet", name);
+}
+std::string plate_mark(Labels& labels, double py) {
+    std::vector<Start> starts;
+    for (double px = kLeft + 6; px < kWidth - kRight; px += kLine)
+        for (const double below : {-6.0, 15.0}) starts.push_back({px, py + below});
+    return line(kLeft, py, kWidth - kRight, py, "mark") + labels.place(starts, "quiet", "no warp at all");
+}
 
 }  // namespace
 
@@ -124,30 +173,7 @@ std::string frontier_svg(const Comparison& c) {
         "over time'>\n"
         "{2}<rect width='{0:g}' height='{1:g}' fill='#fff'/>\n",
         kWidth, kHeight, kStyle);
-    for (double e = x.low; e <= x.high; ++e) {
-        const double px = x.at(std::pow(10, e));
-        svg += line(px, kTop, px, kHeight - kBottom, "grid") +
-               text(px, kHeight - kBottom + 20, "middle", "quiet", tick(e));
-    }
-    for (double e = y.low; e <= y.high; ++e) {
-        const double py = y.at(std::pow(10, e));
-        svg += line(kLeft, py, kWidth - kRight, py, "grid") + text(kLeft - 10, py + 4, "end", "quiet", tick(e));
-    }
-    svg += text((kLeft + kWidth - kRight) / 2, kHeight - 14, "middle", "axis", "time of a frame, map and warp [ms]");
-    svg += fmt::format(
-        "<text x='20' y='{0:g}' text-anchor='middle' transform='rotate(-90 20 {0:g})'>p95 error of the displacement "
-        "[px]</text>\n",
-        (kTop + kHeight - kBottom) / 2);
-
-    const double tracer = x.at(time(c.picture_seconds));
-    svg += line(tracer, kTop, tracer, kHeight - kBottom, "mark") +
-           text(tracer - 6, kTop + 14, "end", "quiet", "the tracer");
-    for (const ModelResult& m : c.models) {
-        if (m.name != kNoModel) continue;
-        const double py = y.at(error(m.all.p95));
-        svg +=
-            line(kLeft, py, kWidth - kRight, py, "mark") + text(kLeft + 6, py - 5, "start", "quiet", "no warp at all");
-    }
+    svg += grid(x, y);
     const std::vector<std::size_t> best = efficient(c);
     std::string path;
     for (const std::size_t m : best)
@@ -169,9 +195,12 @@ std::string frontier_svg(const Comparison& c) {
             points += fmt::format(
                 "<circle cx='{:.1f}' cy='{:.1f}' r='5.5' class='{}'><title>{}: {} px, {} ms</title></circle>\n", px, py,
                 is_best ? "best" : "other", row_name(model), readable(model.all.p95), readable(1e3 * model.seconds()));
-            names += labels.place(px, py, is_best ? "strong" : "axis", row_name(model));
+            names += labels.beside(px, py, is_best ? "strong" : "axis", row_name(model));
         }
-    return svg + points + names + "</svg>\n";
+    std::string marks = tracer_mark(labels, x.at(time(c.picture_seconds)));
+    for (const ModelResult& m : c.models)
+        if (m.name == kNoModel) marks += plate_mark(labels, y.at(error(m.all.p95)));
+    return svg + marks + points + names + "</svg>\n";
 }
 
 }  // namespace eikonal::reference

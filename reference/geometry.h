@@ -9,8 +9,8 @@
 /// spheres, except for segments nearly tangent to them. Which of two triangles a segment through their common edge
 /// meets may depend on the processor, as Embree's own arithmetic does; the point it meets does not.
 ///
-/// Failures: UserError for an empty scene and for objects whose meshes cannot be read. Intersecting never fails: a
-/// segment that is not finite meets nothing.
+/// Failures: UserError for an empty scene and, naming file, line and key (scene_place.h), for meshes that cannot be
+/// read. Intersecting never fails: a segment that is not finite meets nothing.
 #pragma once
 
 #include <memory>
@@ -34,6 +34,7 @@ struct Material {
     bool unlit = false;                            ///< shows its colour whatever the light
     double mirror = 0;                             ///< part of the light that is reflected, 0 … 1
     std::optional<double> refractive_index;        ///< of glass
+    int object = 0;                                ///< whose it is: index in Scene::objects
 };
 
 /// Where a segment origin + t direction first meets a surface.
@@ -48,6 +49,13 @@ struct Hit {
     int material = 0;               ///< index in materials()
 };
 
+/// The surface that a segment meets first, before it is known what it looks like there.
+struct Contact {
+    double t = 0;
+    int plane = -1;                        ///< of Geometry's planes; -1: one of Embree's
+    unsigned geometry = 0, primitive = 0;  ///< Embree's
+};
+
 class Geometry {
   public:
     /// anchor: where rays mostly start (see above).
@@ -59,6 +67,10 @@ class Geometry {
     /// The first surface met at t_min < t < t_max; `direction` need not be of unit length.
     std::optional<Hit> intersect(dvec3 origin, dvec3 direction, double t_min, double t_max) const;
 
+    /// The same in two parts, for whoever may need no more than the distance.
+    std::optional<Contact> nearest(dvec3 origin, dvec3 direction, double t_min, double t_max) const;
+    void look(const Contact& contact, dvec3 origin, dvec3 direction, Hit& hit) const;
+
     /// Whether anything lies at t_min < t < t_max.
     bool occluded(dvec3 origin, dvec3 direction, double t_min, double t_max) const;
 
@@ -66,8 +78,10 @@ class Geometry {
     /// Embree's float positions may err there.
     dvec3 leave(const Hit& hit) const;
 
-    /// Object index of a sphere that a point lies within.
-    std::optional<int> sphere_around(dvec3 point) const;
+    /// Object index of a sphere or closed mesh that a point lies within: of a mesh whose surface is passed an odd
+    /// number of times on all ways out but one of seven. Surfaces within a hundred-thousandth of their distance count
+    /// as one.
+    std::optional<int> object_around(dvec3 point) const;
 
     const std::vector<Material>& materials() const { return materials_; }
 
@@ -89,15 +103,15 @@ class Geometry {
         int first_material;  ///< of the mesh's own list
     };
 
-    int add_material(const ObjectSpec& object);
-    void add_mesh(const ObjectSpec& object, int index);
+    int add_material(const ObjectSpec& object, int index);
+    void add_mesh(const Scene& scene, int index);
     void attach_mesh(const MeshEntry& entry);
     void attach_spheres();
     std::optional<double> plane_distance(const Plane& plane, dvec3 origin, dvec3 direction, double t_min,
                                          double t_max) const;
     void plane_hit(const Plane& plane, Hit& hit) const;
-    void mesh_hit(const MeshEntry& entry, unsigned triangle, dvec3 origin, dvec3 direction, Hit& hit) const;
-    void sphere_hit(const Sphere& sphere, dvec3 origin, dvec3 direction, Hit& hit) const;
+    void mesh_hit(const MeshEntry& entry, unsigned triangle, Hit& hit) const;
+    void sphere_hit(const Sphere& sphere, Hit& hit) const;
 
     dvec3 anchor_;
     std::vector<Material> materials_;

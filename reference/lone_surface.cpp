@@ -13,6 +13,8 @@ namespace {
 constexpr double kLeastChange = 0.02;
 /// A straight ray that ends on the surface may be below it by rounding: in dropoffs.
 constexpr double kBelow = 1e-6;
+/// What is lower than this counts as on it: in dropoffs.
+constexpr double kOnSurface = 1e-12;
 
 }  // namespace
 
@@ -20,7 +22,9 @@ LoneSurface::LoneSurface(const SurfaceSpec& spec, const OpticsSpec& optics)
     : layer_(spec, index_law(optics)),
       law_(index_law(optics)),
       equation_(optics.ray_equation),
-      exaggeration_(optics.exaggeration) {
+      exaggeration_(optics.exaggeration),
+      has_index_(1 + law_.ambient() + std::min(0.0, exaggeration_ * layer_.above_ambient(0)) > 0.25),
+      surface_(at(0.0)) {
     const double n = 1 + law_.ambient() + std::abs(exaggeration_ * layer_.above_ambient(0));
     largest_force_ = std::abs(force_strength(optics)) * layer_.largest_slope() * n;
 }
@@ -44,29 +48,29 @@ double LoneSurface::clear_way(const dvec3& x, const dvec3& d, double turn, doubl
     return above > kTouch * top ? way_to_plane(above, climb) : 0;
 }
 
-bool LoneSurface::is_quiet(const dvec3& x, const dvec3& d, double distance, double force) const {
-    const double h0 = layer_.height(x);
-    return std::min(h0, h0 + layer_.climb(d) * distance) > quiet_height(force);
+bool LoneSurface::is_quiet(double height, const dvec3& d, double distance, double force) const {
+    const double lowest = std::min(height, height + layer_.climb(d) * distance);
+    return lowest > kBelow * layer_.dropoff() && lowest > quiet_height(force);
 }
 
+/// Of a height below the surface: that of the surface.
 LoneSurface::AtHeight LoneSurface::at(double h) const {
     const double A = exaggeration_ * law_.refractivity * law_.T0, Ta = law_.ambient_temperature;
     const double excess = layer_.above_ambient(h), q = exaggeration_ * excess;
     // T_a/T = 1 + T_a q/A
     const double logarithm = -portable::log(1 + Ta * excess / (law_.refractivity * law_.T0));
     const double scale = A * layer_.dropoff() / Ta, Q = scale * logarithm;
-    if (equation_ == RayEquation::Paper) return {0.5 * q, 0.5 * Q};
+    if (equation_ == RayEquation::Paper) return {h, 0.5 * q, 0.5 * Q};
     const double n = 1 + law_.ambient();
-    return {n * q + 0.5 * q * q, n * Q - 0.5 * scale * (A * logarithm / Ta + q)};
+    return {h, n * q + 0.5 * q * q, n * Q - 0.5 * scale * (A * logarithm / Ta + q)};
 }
 
-std::optional<dvec3> LoneSurface::pull(const dvec3& x, const dvec3& d, double distance) const {
-    const double c = layer_.climb(d), h0 = layer_.height(x), h1 = h0 + c * distance;
+std::optional<dvec3> LoneSurface::pull(const AtHeight& from, const dvec3& d, double distance) const {
+    const double c = layer_.climb(d), h0 = from.height, h1 = h0 + c * distance;
     const double below = -kBelow * layer_.dropoff();
-    if (!(h0 >= 0 && h1 >= below && std::abs(h1 - h0) >= kLeastChange * layer_.dropoff())) return {};
-    if (!(1 + law_.ambient() + std::min(0.0, exaggeration_ * layer_.above_ambient(0)) > 0.25)) return {};
-    const AtHeight start = at(h0), end = at(std::max(h1, 0.0));
-    return ((end.P - start.P) / c - distance * start.g) / c * layer_.normal();
+    if (!(has_index_ && h0 >= 0 && h1 >= below && std::abs(h1 - h0) >= kLeastChange * layer_.dropoff())) return {};
+    const AtHeight to = h1 <= kOnSurface * layer_.dropoff() ? surface_ : at(h1);
+    return ((to.P - from.P) / c - distance * from.g) / c * layer_.normal();
 }
 
 }  // namespace eikonal::reference

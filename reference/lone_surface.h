@@ -27,18 +27,21 @@ class LoneSurface {
     /// Length of the way from x along the unit direction d on which all that is above turns a ray by less than `turn`
     /// [rad] > 0, however it goes on within `longest` metres: 0 if none.
     double clear_way(const dvec3& x, const dvec3& d, double turn, double longest) const;
-    /// Whether |F| is below `force` [1/m] > 0 all along the straight ray from x, unit direction d, for sure.
-    bool is_quiet(const dvec3& x, const dvec3& d, double distance, double force) const;
+    /// Whether |F| is below `force` [1/m] > 0 all along the straight ray from this height, unit direction d, for sure.
+    bool is_quiet(double height, const dvec3& d, double distance, double force) const;
 
-    /// ∫₀^D (D - w) F dw along the straight ray from x, [m] in units of the index squared. Nothing for rays below the
-    /// surface, for those that change their height by less than a part of the dropoff, where the form cancels, and
-    /// where there might be no index.
-    std::optional<dvec3> pull(const dvec3& x, const dvec3& d, double distance) const;
+    /// Of a height: the functions above.
+    struct AtHeight {
+        double height, g, P;
+    };
+    AtHeight at(const dvec3& x) const { return at(layer_.height(x)); }
+
+    /// ∫₀^D (D - w) F dw along a straight ray from a place of which at() tells, unit direction d, [m] in units of the
+    /// index squared. Nothing for rays below the surface, for those that change their height by less than a part of the
+    /// dropoff, where the form cancels, and where there might be no index.
+    std::optional<dvec3> pull(const AtHeight& from, const dvec3& d, double distance) const;
 
   private:
-    struct AtHeight {
-        double g, P;
-    };
     AtHeight at(double h) const;
     double quiet_height(double force) const;
 
@@ -46,6 +49,8 @@ class LoneSurface {
     IndexLaw law_;
     RayEquation equation_;
     double exaggeration_, largest_force_;
+    bool has_index_;  ///< everywhere, for sure
+    AtHeight surface_;
 };
 
 }  // namespace eikonal::reference

@@ -65,9 +65,11 @@ void add_integrator(CLI::App& command, RaySettings& rays) {
                     "media need)")
         ->check(within(1e-9, 1e9))
         ->type_name("M");
-    command.add_option("--step-budget", rays.step_budget, "steps after which a trapped ray ends")
+    command
+        .add_option("--step-budget", rays.step_budget,
+                    fmt::format("steps after which a trapped ray ends (default: {}; {} with --step and for path)",
+                                kStepBudget, kLongStepBudget))
         ->check(CLI::Range(10, 1000000000))
-        ->capture_default_str()
         ->type_name("N");
 }
 

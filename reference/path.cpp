@@ -11,6 +11,9 @@
 namespace eikonal::reference {
 namespace {
 
+/// Of u, relative: where a ray ends within this of its length it has reached it.
+constexpr double kSameEnd = 1e-11;
+
 void write_row(std::ostream& stream, const RayState& at) {
     stream << fmt::format("{},{},{},{},{},{},{}\n", at.u, at.x.x, at.x.y, at.x.z, at.p.x, at.p.y, at.p.z);
 }
@@ -20,15 +23,18 @@ void write_row(std::ostream& stream, const RayState& at) {
 BentHit write_path(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
                    const TraceSettings& settings, std::ostream& stream, const std::string& name) {
     std::vector<Step> steps;
-    const BentHit result =
+    BentHit result =
         trace(field, geometry, origin, direction, settings, nullptr, [&](const Step& step) { steps.push_back(step); });
+    // Steps add up to the length that is asked for but for rounding.
+    if (result.end == BentHit::End::Escaped && std::abs(result.at.u - settings.u_end) <= kSameEnd * (1 + result.at.u))
+        result.at.u = settings.u_end;
+    // The last one ends early if it meets a surface; steps beyond it do not count.
+    while (!steps.empty() && steps.back().from.u >= result.at.u) steps.pop_back();
     stream << "u,x,y,z,px,py,pz\n";
     write_row(stream, steps.empty() ? result.at : steps.front().from);
     for (const Step& step : steps) {
-        // The last one ends early if it meets a surface; steps beyond it do not count.
-        if (step.from.u >= result.at.u) break;
-        const bool last = step.from.u + step.h >= result.at.u;
-        const double end = last ? (result.at.u - step.from.u) / step.h : 1;
+        const bool last = &step == &steps.back();
+        const double end = last ? std::min(1.0, (result.at.u - step.from.u) / step.h) : 1;
         const double points = std::ceil(std::min(step.bend() / kPathTurn, static_cast<double>(kMostPointsAStep)));
         for (int i = 1; i < static_cast<int>(points); ++i) write_row(stream, step.at(i / points * end));
         write_row(stream, last ? result.at : step.to());

@@ -48,7 +48,6 @@ class Quadrature {
         return jet;
     }
     bool without_index(double w) const;
-    bool closed_form(double distance);
     void straight(double length);
     double off(const ForceJet& from, const ForceJet& middle, const ForceJet& to, double length) const;
     void bent(const ForceJet& from, const ForceJet& middle, const ForceJet& to, double length);
@@ -92,33 +91,7 @@ bool Quadrature::without_index(double w) const {
     return speed_ + 2 * glm::dot(sum_.dx1, direction_) < 0.25 * speed_ && !(field_.speed(at(w)) > 0);
 }
 
-/// First order without steps, where there is a form for it that is within the tolerance.
-bool Quadrature::closed_form(double distance) {
-    if (!std::isfinite(distance)) return false;
-    const double tolerance = settings_.tolerance_px * settings_.pixel / (settings_.perspective ? 1 : distance);
-    const double quiet = tolerance / kQuietShare;
-    dvec3 pull(0);
-    if (settings_.lone) {
-        if (!settings_.lone->is_quiet(origin_, direction_, distance, 2 * quiet / distance)) {
-            const auto bent = settings_.lone->pull(origin_, direction_, distance);
-            if (!bent) return false;
-            pull = *bent;
-        }
-    } else {
-        const auto bent = field_.pull(origin_, direction_, distance, quiet);
-        if (!bent) return false;
-        const double error = bent->error * glm::length(bent->value) / (speed_ * speed_ * distance);
-        if (!(error <= tolerance)) return false;
-        sum_.error = error;
-        pull = bent->value;
-    }
-    sum_.x1 = pull / (speed_ * speed_);
-    sum_.steps = 1;
-    return true;
-}
-
 Perturbed Quadrature::over(double distance) {
-    if (!second_ && settings_.step == 0 && closed_form(distance)) return sum_;
     const double place = 1e-12 * (1 + glm::length(origin_) + std::min(distance, 1e6));
     const double allowed =
         settings_.tolerance_px * settings_.pixel / kStepShare / (settings_.perspective ? 1 : distance);
@@ -133,7 +106,7 @@ Perturbed Quadrature::over(double distance) {
             sum_.no_index = true;
             break;
         }
-        const double clear = here.force == dvec3(0) ? std::min(field_.clear_way(at(w), direction_), distance - w) : 0;
+        const double clear = may_be_clear(here.force) ? std::min(field_.clear_way(at(w), direction_), distance - w) : 0;
         double length = distance - w, edge = clear;
         if (!(clear > 0)) {
             const double longest = field_.longest_step(at(w), direction_);
@@ -163,18 +136,49 @@ Perturbed Quadrature::over(double distance) {
     return sum_;
 }
 
+/// First order without steps, where there is a form for it that is within the tolerance.
+std::optional<Perturbed> closed_form(const FieldInstant& field, const TraceSettings& settings, const dvec3& origin,
+                                     const dvec3& direction, double speed, double distance) {
+    if (!std::isfinite(distance)) return {};
+    const double tolerance = settings.tolerance_px * settings.pixel / (settings.perspective ? 1 : distance);
+    const double quiet = tolerance / kQuietShare, inverse_square = 1 / (speed * speed);
+    Perturbed result;
+    result.steps = 1;
+    if (settings.lone) {
+        const LoneSurface& lone = *settings.lone;
+        const LoneSurface::AtHeight from =
+            settings.origin && settings.origin->place == origin ? settings.origin->height : lone.at(origin);
+        if (lone.is_quiet(from.height, direction, distance, 2 * quiet / distance)) return result;
+        const auto pull = lone.pull(from, direction, distance);
+        if (!pull) return {};
+        result.x1 = inverse_square * *pull;
+        return result;
+    }
+    const auto pull = field.pull(origin, direction, distance, quiet);
+    if (!pull) return {};
+    result.error = pull->error * glm::length(pull->value) * inverse_square / distance;
+    if (!(result.error <= tolerance)) return {};
+    result.x1 = inverse_square * pull->value;
+    return result;
+}
+
 }  // namespace
 
 BentHit trace_perturbed(const FieldInstant& field, const Geometry* geometry, const dvec3& origin,
                         const dvec3& direction, const TraceSettings& settings, const StepRecorder& recorder) {
     BentHit result;
-    const double speed = field.speed(origin);
+    const double speed = settings.launch_speed(field, origin);
     result.at = {origin, speed * direction, 0};
     const double far = std::min(settings.far, settings.u_end * speed);
-    std::optional<Hit> hit;
-    if (geometry) hit = geometry->intersect(origin, direction, 0, far);
-    const double distance = hit ? hit->t : far;
-    const Perturbed sum = Quadrature(field, settings, origin, direction, speed).over(distance);
+    const auto nearest = [&](const dvec3& from, const dvec3& along) {
+        return geometry ? geometry->nearest(from, along, 0, far) : std::optional<Contact>();
+    };
+    const std::optional<Contact> straight = nearest(origin, direction);
+    const double distance = straight ? straight->t : far;
+    std::optional<Perturbed> closed;
+    if (settings.integrator == Integrator::FirstOrder && settings.step == 0)
+        closed = closed_form(field, settings, origin, direction, speed, distance);
+    const Perturbed sum = closed ? *closed : Quadrature(field, settings, origin, direction, speed).over(distance);
     result.steps = std::min(sum.steps, settings.step_budget);
     result.error_px = sum.error / settings.pixel * (settings.perspective ? 1 : distance);
     if (!(speed > 0) || sum.no_index || sum.trapped) {
@@ -188,18 +192,28 @@ BentHit trace_perturbed(const FieldInstant& field, const Geometry* geometry, con
     RayState& ray = result.at;
     // Where it is bent by nothing that matters the straight ray has found what there is.
     const double room = settings.step > 0 ? 0 : settings.tolerance_px * settings.pixel / kQuietShare;
-    if (glm::length(shift) > room * (settings.perspective ? distance : 1)) {
+    const double limit = room * (settings.perspective ? distance : 1);
+    const auto arrive = [&](const std::optional<Contact>& contact, const dvec3& from, const dvec3& along) {
+        result.length = contact ? contact->t : far;
+        if (!contact) return;
+        geometry->look(*contact, from, along, result.surface);
+        result.end = BentHit::End::Surface;
+        result.hit = true;
+    };
+    if (glm::dot(shift, shift) > limit * limit) {
+        dvec3 along = direction;
         if (settings.perspective)
-            ray.p = speed * glm::normalize(distance * direction + shift);
+            along = glm::normalize(distance * direction + shift);
         else
             ray.x += shift;
-        if (geometry) hit = geometry->intersect(ray.x, ray.p / speed, 0, far);
+        ray.p = speed * along;
+        arrive(nearest(ray.x, along), ray.x, along);
+    } else {
+        arrive(straight, origin, direction);
     }
-    result.length = hit ? hit->t : far;
     if (recorder) recorder(straight_step(ray, result.length));
     ray.u += result.length / speed;
-    ray.x += result.length / speed * ray.p;
-    if (hit) result.meet(*hit);
+    ray.x = result.hit ? result.surface.point : ray.x + result.length / speed * ray.p;
     return result;
 }
 

@@ -10,7 +10,11 @@
 /// The ray is then redirected, as the paper renders: a straight one from the same origin towards D d + x1⊥(U), or, for
 /// an orthographic camera, a parallel one shifted by x1⊥(U). Second order takes x1⊥ + x2⊥ - x1'⊥ x1∥/|p0|, which is
 /// where the bent ray passes the plane through the straight one's end, across it. Error in the strength of the field:
-/// quadratic, and cubic. A ray that is not bent by what matters (kQuietShare) is not shot again.
+/// quadratic, and cubic where what is met faces the ray: the redirected ray arrives along its own straight line, so a
+/// surface that it meets obliquely is missed by the quadratic part in either order. Neither knows rays that turn back:
+/// over a hot road they hold well above the critical angle √(2B) and are worth nothing below it (from 0.2 m over
+/// asphalt of 305 K: 0.2 m off where the ray meets it at 1.2 times that angle, 9 mm at twice, 2 µm at ten times). A ray
+/// that is not bent by what matters (kQuietShare) is not shot again.
 ///
 /// First order over nothing but a surface (lone_surface.h) and through nothing but blobs and thin screens
 /// (FieldInstant::pull) is closed form, unless what that leaves out is above the tolerance. Else the integrals are

@@ -8,6 +8,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// For a ray that goes on after so many metres of path.
+TraceSettings at_distance(TraceSettings trace, double distance) {
+    trace.distance = distance;
+    return trace;
+}
+
 }  // namespace
 
 double fresnel_reflectance(double n1, double cos1, double n2, double cos2) {
@@ -32,10 +38,11 @@ std::optional<Hit> RayTree::meet(const Branch& branch, const TraceSettings& trac
         length = branch.distance + (hit ? hit->t * glm::length(p) : 0.0);
         return hit;
     }
-    TraceSettings settings = trace;
-    settings.distance = branch.distance;
-    const BentHit end =
-        reference::trace(*field_, &geometry_, branch.origin, glm::normalize(p), settings, nullptr, watch(cancelled_));
+    const auto follow_with = [&](const TraceSettings& settings) {
+        return reference::trace(*field_, &geometry_, branch.origin, glm::normalize(p), settings, nullptr,
+                                watch(cancelled_));
+    };
+    const BentHit end = branch.distance == 0 ? follow_with(trace) : follow_with(at_distance(trace, branch.distance));
     p = end.at.p;
     length = branch.distance + end.length;
     dark = end.end == BentHit::End::Trapped || end.end == BentHit::End::NoIndex;

@@ -4,8 +4,10 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "noise/error.h"
 #include "noise/random.h"
@@ -21,6 +23,12 @@ constexpr int kSightRays = 33;
 constexpr float kTrappedId = -1, kNoIndexId = -2;
 /// Of a straight ray through its own hit, by rounding [px].
 constexpr double kRoundingShift = 1e-7;
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 int tiles_across(int pixels) {
     return (pixels + kTileSize - 1) / kTileSize;
@@ -107,35 +115,56 @@ int Renderer::tile_count() const {
     return tiles_across(width_) * tiles_across(height_);
 }
 
-RenderedFrame Renderer::render_tiles(int frame, int every, const std::function<void()>& tile_done) const {
-    const auto area = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    RenderedFrame result{width_,
-                         height_,
-                         std::vector<float>(settings_.colour ? 4 * area : 0),
-                         std::vector<float>(area),
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {},
-                         {}};
-    const Camera camera = path_.at(frame);
-    std::optional<Air> air;
-    if (!settings_.straight) {
-        for (auto* plane : {&result.length, &result.u, &result.v, &result.id, &result.steps, &result.error})
-            plane->resize(area);
-        if (settings_.magnification) result.magnification.resize(area);
-        air.emplace(Air{air_->at(frame), air_->trace_settings(camera), {}});
-        air->trace.sight = sight(camera, air->trace, air_->far());
-        if (settings_.light_rays > 0 && scene_.light && settings_.colour)
-            air->sunlight.emplace(scene_, geometry_, air->field, air->trace, settings_.light_rays, settings_.cancelled);
+RenderedFrame Renderer::planes(int width, int height, bool colour) const {
+    const auto area = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    RenderedFrame result;
+    result.width = width;
+    result.height = height;
+    if (colour) result.color.resize(4 * area);
+    result.depth.resize(area);
+    if (settings_.straight) return result;
+    for (auto* plane : {&result.length, &result.u, &result.v, &result.id, &result.steps, &result.error})
+        plane->resize(area);
+    if (settings_.magnification) result.magnification.resize(area);
+    return result;
+}
+
+void Renderer::check_camera(int frame) const {
+    if (settings_.straight) return;
+    const dvec3 at = camera(frame).position;
+    for (std::size_t i = 0; i < scene_.media.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceSpec>(&scene_.media[i]);
+        if (!surface || surface->surface_temperature == scene_.optics.ambient_temperature) continue;
+        if (const double height = glm::dot(at - surface->origin, glm::normalize(surface->normal)); !(height > 0))
+            throw UserError(fmt::format(
+                "{}: medium.{}.origin: at frame {} the camera at ({:g}, {:g}, {:g}) is {:g} m below this surface; it "
+                "must be above it: lower the surface, or turn its normal towards the camera",
+                scene_.file.string(), i, frame, at.x, at.y, at.z, 0.0 - height));
     }
-    tbb::parallel_for(0, tile_count(), every, [&](int index) {
+}
+
+std::optional<Renderer::Air> Renderer::air_at(int frame, const Camera& camera) const {
+    if (settings_.straight) return std::nullopt;
+    Air air{air_->at(frame), air_->trace_settings(camera), {}};
+    if (air.trace.perspective) air.trace.start_at(air.field, camera.position);
+    air.trace.sight = sight(camera, air.trace, air_->far());
+    return air;
+}
+
+RenderedFrame Renderer::render(int frame, const FrameWatch& watch) const {
+    RenderedFrame result = planes(width_, height_, settings_.colour);
+    const Camera camera = path_.at(frame);
+    std::optional<Air> air = air_at(frame, camera);
+    if (air && watch.probed) watch.probed(try_rays(camera, frame, &*air, {}));
+    if (air && settings_.light_rays > 0 && scene_.light && settings_.colour)
+        air->sunlight.emplace(scene_, geometry_, air->field, air->trace, settings_.light_rays, settings_.cancelled,
+                              watch.light);
+    if (watch.tiles_begin) watch.tiles_begin();
+    tbb::parallel_for(0, tile_count(), [&](int index) {
         const int x0 = index % tiles_across(width_) * kTileSize, y0 = index / tiles_across(width_) * kTileSize;
         render_tile(camera, frame, {x0, y0, std::min(x0 + kTileSize, width_), std::min(y0 + kTileSize, height_)},
                     air ? &*air : nullptr, result);
-        if (tile_done) tile_done();
+        if (watch.tile_done) watch.tile_done();
     });
     return result;
 }
@@ -143,21 +172,71 @@ RenderedFrame Renderer::render_tiles(int frame, int every, const std::function<v
 void Renderer::render_tile(const Camera& camera, int frame, const Tile& tile, const Air* air,
                            RenderedFrame& into) const {
     for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x) {
-            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-            if (settings_.colour) {
-                const dvec3 c = colour(camera, frame, x, y, air);
-                for (int k = 0; k < 3; ++k) into.color[4 * i + static_cast<std::size_t>(k)] = storable(c[k]);
-                into.color[4 * i + 3] = 1;
-            }
-            if (air)
-                center_bent(camera, x, y, *air, i, into);
-            else
-                center_straight(camera, x, y, i, into);
-        }
+        for (int x = tile.x0; x < tile.x1; ++x)
+            render_pixel(camera, frame, x, y, air, settings_.colour ? settings_.samples : 0,
+                         static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x),
+                         into);
 }
 
-dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air* air) const {
+/// Of no samples: without colour.
+void Renderer::render_pixel(const Camera& camera, int frame, int x, int y, const Air* air, int samples, std::size_t i,
+                            RenderedFrame& into) const {
+    if (samples > 0) {
+        const dvec3 c = colour(camera, frame, x, y, air, samples);
+        for (int k = 0; k < 3; ++k) into.color[4 * i + static_cast<std::size_t>(k)] = storable(c[k]);
+        into.color[4 * i + 3] = 1;
+    }
+    if (air)
+        center_bent(camera, x, y, *air, i, into);
+    else
+        center_straight(camera, x, y, i, into);
+}
+
+Probe Renderer::probe(int frame, const ProbeLimits& limits) const {
+    const auto start = Clock::now();
+    const Camera camera = path_.at(frame);
+    std::optional<Air> air = air_at(frame, camera);
+    const double setup = since(start);
+    Probe probe = try_rays(camera, frame, air ? &*air : nullptr, limits);
+    probe.setup = setup;
+    return probe;
+}
+
+Probe Renderer::try_rays(const Camera& camera, int frame, Air* air, const ProbeLimits& limits) const {
+    Probe probe;
+    probe.samples = std::min(settings_.colour ? settings_.samples : 0, limits.samples);
+    probe.pixels = planes(limits.most, 1, probe.samples > 0);
+    const int budget = air ? air->trace.step_budget : 0;
+    probe.step_limit = std::min(budget, limits.steps);
+    if (air) air->trace.step_budget = probe.step_limit;
+    const auto start = Clock::now();
+    int done = 0;
+    for (int until = limits.first; done < until; until = std::min(2 * until, limits.most)) {
+        tbb::parallel_for(done, until, [&](int i) {
+            const dvec2 place = spread_point(static_cast<std::uint32_t>(i), 0);
+            render_pixel(camera, frame, static_cast<int>(place.x * width_), static_cast<int>(place.y * height_), air,
+                         probe.samples, static_cast<std::size_t>(i), probe.pixels);
+        });
+        done = until;
+        probe.seconds = since(start);
+        if (probe.seconds > limits.seconds) break;
+    }
+    if (air) air->trace.step_budget = budget;
+    probe.pixels.width = done;
+    RenderedFrame& p = probe.pixels;
+    for (auto* plane : {&p.depth, &p.length, &p.u, &p.v, &p.id, &p.steps, &p.error, &p.magnification})
+        if (!plane->empty()) plane->resize(static_cast<std::size_t>(done));
+    return probe;
+}
+
+std::array<double, 2> Probe::time(double area, int samples_each, int step_budget) const {
+    const double shortest = seconds * area / pixels.width * (1 + samples_each) / (1 + samples);
+    const double steps = std::accumulate(pixels.steps.begin(), pixels.steps.end(), 0.0);
+    const double further = static_cast<double>(pixels.trapped()) * (step_budget - step_limit);
+    return {shortest, shortest * (steps > 0 ? 1 + further / steps : 1)};
+}
+
+dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air* air, int samples) const {
     const auto pixel =
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
     const auto bits = [&](std::string_view name) {
@@ -167,15 +246,17 @@ dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air*
                         sky_bits = bits("sky direction");
     const RayTree tree(geometry_, shading_, air ? &air->field : nullptr,
                        air && air->sunlight ? &*air->sunlight : nullptr, settings_.cancelled);
+    const TraceSettings straight;
     dvec3 sum(0);
-    for (int k = 0; k < settings_.samples; ++k) {
+    for (int k = 0; k < samples; ++k) {
         const auto sample = static_cast<std::uint32_t>(k);
         const dvec2 p = spread_point(sample, pixel_bits);
         const CameraRay ray = camera_ray(camera, x + p.x, y + p.y);
-        sum += tree.radiance(ray.origin, ray.direction, air ? air->trace : TraceSettings{},
-                             {spread_point(sample, sun_bits), spread_point(sample, sky_bits)});
+        LightSample light{};
+        if (scene_.light) light = {spread_point(sample, sun_bits), spread_point(sample, sky_bits)};
+        sum += tree.radiance(ray.origin, ray.direction, air ? air->trace : straight, light);
     }
-    return sum / static_cast<double>(settings_.samples);
+    return sum / static_cast<double>(samples);
 }
 
 void Renderer::center_straight(const Camera& camera, int x, int y, std::size_t i, RenderedFrame& into) const {

@@ -21,6 +21,7 @@
 /// be rendered or is given up (cancel.h).
 #pragma once
 
+#include <array>
 #include <functional>
 
 #include "reference/cancel.h"
@@ -54,27 +55,55 @@ struct RenderedFrame {
     std::size_t folded() const;
 };
 
+/// How much of a frame is tried: pixels spread over it, `first` of them, then as many again and again until there are
+/// `most` or `seconds` are over. Whatever the scene, that is soon: no ray takes more than `steps`.
+struct ProbeLimits {
+    int first = 64, most = 64;
+    double seconds = 0;
+    int steps = 2000;
+    int samples = 0;  ///< of colour, at most
+};
+
+/// What a frame will be like.
+struct Probe {
+    RenderedFrame pixels;           ///< those tried, in one row, under straight sunlight
+    int samples = 0;                ///< of colour a pixel
+    int step_limit = 0;             ///< what ended the rays that `pixels` count as trapped
+    double setup = 0, seconds = 0;  ///< wall time: of the media, of the rays
+
+    /// Wall time of so many pixels [s] if unfinished rays end at once, and if they go on to the step budget.
+    std::array<double, 2> time(double area, int samples_each, int step_budget) const;
+};
+
+/// What is told while a frame is rendered; any may be left out.
+struct FrameWatch {
+    std::function<void(const Probe&)> probed;  ///< of bent rays through pixels' centres, before all others
+    LightWatch light;
+    std::function<void()> tiles_begin;
+    std::function<void()> tile_done;  ///< after each of tile_count() tiles, from any thread
+};
+
 class Renderer {
   public:
     /// Reads meshes and textures, and makes the media, once for all frames.
     Renderer(const Scene& scene, const RenderSettings& settings);
 
-    /// tile_done, if given, is called after each of tile_count() tiles, from any thread.
+    RenderedFrame render(int frame, const FrameWatch& watch) const;
     RenderedFrame render(int frame, const std::function<void()>& tile_done = {}) const {
-        return render_tiles(frame, 1, tile_done);
+        return render(frame, FrameWatch{{}, {}, {}, tile_done});
     }
     int tile_count() const;
-    /// Every so many tiles of a frame, counted in rows, only; the rest of its planes is zero. What render() will be
-    /// like.
-    RenderedFrame probe(int frame, int every) const { return render_tiles(frame, every, {}); }
+    Probe probe(int frame, const ProbeLimits& limits) const;
 
     int width() const { return width_; }
     int height() const { return height_; }
     /// What becomes of each medium; nothing for straight rays.
     std::vector<std::string> notes() const { return air_ ? air_->notes() : std::vector<std::string>{}; }
 
-    /// Object index of a sphere that the camera is inside of: the picture shows it from within.
-    std::optional<int> camera_inside(int frame) const { return geometry_.sphere_around(camera(frame).position); }
+    /// Object index of a sphere or closed mesh that the camera is inside of: the picture shows it from within.
+    std::optional<int> camera_inside(int frame) const { return geometry_.object_around(camera(frame).position); }
+    /// UserError if bent rays would start below a heated surface, where no air is. (Straight ones may.)
+    void check_camera(int frame) const;
     Camera camera(int frame) const { return path_.at(frame); }
 
   private:
@@ -82,10 +111,14 @@ class Renderer {
         int x0, y0, x1, y1;
     };
     struct Air;
-    RenderedFrame render_tiles(int frame, int every, const std::function<void()>& tile_done) const;
+    std::optional<Air> air_at(int frame, const Camera& camera) const;
+    RenderedFrame planes(int width, int height, bool colour) const;
+    Probe try_rays(const Camera& camera, int frame, Air* air, const ProbeLimits& limits) const;
     double sight(const Camera& camera, const TraceSettings& trace, double far) const;
     void render_tile(const Camera& camera, int frame, const Tile& tile, const Air* air, RenderedFrame& into) const;
-    dvec3 colour(const Camera& camera, int frame, int x, int y, const Air* air) const;
+    void render_pixel(const Camera& camera, int frame, int x, int y, const Air* air, int samples, std::size_t i,
+                      RenderedFrame& into) const;
+    dvec3 colour(const Camera& camera, int frame, int x, int y, const Air* air, int samples) const;
     void center_straight(const Camera& camera, int x, int y, std::size_t i, RenderedFrame& into) const;
     void center_bent(const Camera& camera, int x, int y, const Air& air, std::size_t i, RenderedFrame& into) const;
 

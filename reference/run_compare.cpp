@@ -1,6 +1,7 @@
 /// `eikonal-trace compare`: the warp against the tracer, on frames of a scene.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -34,7 +35,8 @@ std::string compared_scene(const std::filesystem::path& folder) {
 
 int run(const CompareOptions& o) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
-    const std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
+    std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
+    std::sort(frames.begin(), frames.end());  // in the order of time, however they are listed
     const std::filesystem::path page = o.output / "index.html";
     Comparer comparer(scene, o.compare);
     std::error_code ignored;
@@ -49,19 +51,20 @@ int run(const CompareOptions& o) {
         return 0;
     }
     make_folder(o.output);
-    std::vector<PagePicture> pictures;
-    for (const int frame : frames) {
+    std::vector<PageFrame> pages;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const int frame = frames[i];
         try {
             TileProgress progress(fmt::format("frame {}", frame), comparer.tile_count());
             const Comparer::Frame& compared = comparer.add(frame, [&] { progress.tile_done(); });
             std::vector<PagePicture> written = write_pictures(o.output, comparer.result(), compared);
-            if (pictures.empty()) pictures = std::move(written);
+            if (on_page(i, frames.size())) pages.push_back({frame, std::move(written)});
         } catch (const FrameError& error) {
             throw FrameError(fmt::format("frame {}: {}", frame, error.what()));
         }
     }
     const Comparison result = comparer.result();
-    write_report(o.output, result, pictures);
+    write_report(o.output, result, pages);
     fmt::print("{}\nwrote {}\n", table_text(result), page.string());
     return 0;
 }

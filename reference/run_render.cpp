@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 
 #include "noise/error.h"
 #include "reference/commands.h"
@@ -17,6 +18,9 @@
 
 namespace eikonal::reference {
 namespace {
+
+/// Part of the rays tried that may go on for long before a frame's user is warned.
+constexpr double kManyUnfinished = 0.05;
 
 using Clock = std::chrono::steady_clock;
 
@@ -48,6 +52,34 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
                seconds, mean(frame.steps), mean(frame.error));
 }
 
+/// Says at once what would only show after hours.
+void warn(const RenderOptions& o, int frame, const Renderer& renderer, const Probe& probe) {
+    const std::size_t unfinished = probe.pixels.trapped();
+    if (unfinished < kManyUnfinished * static_cast<double>(probe.pixels.width)) return;
+    const double seconds = probe.time(static_cast<double>(renderer.width()) * renderer.height(), o.render.samples,
+                                      o.render.rays.budget())[1];
+    fmt::print(stderr,
+               "frame {}: warning: {} of {} rays tried did not end within {} steps: where they are trapped or curl up "
+               "the frame takes up to {:.2g} {}; weaker media, fewer --samples or a smaller --step-budget shorten it\n",
+               frame, unfinished, probe.pixels.width, probe.step_limit, seconds > 3600 ? seconds / 3600 : seconds,
+               seconds > 3600 ? "h" : "s");
+}
+
+RenderedFrame render(const Renderer& renderer, const RenderOptions& o, int frame) {
+    std::optional<TileProgress> progress;
+    const auto begin = [&](const std::string& what, int parts) {
+        progress.reset();  // clears its line
+        progress.emplace(fmt::format("frame {}{}", frame, what), parts);
+    };
+    FrameWatch watch;
+    watch.probed = [&](const Probe& probe) { warn(o, frame, renderer, probe); };
+    watch.light.begins = [&](int object, int rows) { begin(fmt::format(", sunlight on object.{}", object), rows); };
+    watch.light.row_done = [&] { progress->tile_done(); };
+    watch.tiles_begin = [&] { begin("", renderer.tile_count()); };
+    watch.tile_done = [&] { progress->tile_done(); };
+    return renderer.render(frame, watch);
+}
+
 }  // namespace
 
 int run(const RenderOptions& o) {
@@ -57,6 +89,7 @@ int run(const RenderOptions& o) {
     RenderSettings settings = o.render;
     settings.cancelled = interrupted;
     const Renderer renderer(scene, settings);
+    for (const int frame : frames) renderer.check_camera(frame);
     if (o.explain) {
         explain(renderer, scene, settings, frames,
                 o.common.threads > 0 ? o.common.threads : tbb::info::default_concurrency());
@@ -77,8 +110,7 @@ int run(const RenderOptions& o) {
             }
             const AtomicFile place(file);  // fails now rather than after the work if the file cannot be put there
             const auto start = Clock::now();
-            TileProgress progress(fmt::format("frame {}", frame), renderer.tile_count());
-            const RenderedFrame rendered = renderer.render(frame, [&] { progress.tile_done(); });
+            const RenderedFrame rendered = render(renderer, o, frame);
             write_frame(file, rendered, o.compact ? Storage::Compact : Storage::Exact);
             report(o, rendered, frame, std::chrono::duration<double>(Clock::now() - start).count());
         } catch (const FrameError& error) {

@@ -10,6 +10,7 @@
 #include "noise/error.h"
 #include "noise/portable_math.h"
 #include "reference/direction.h"
+#include "reference/scene_place.h"
 #include "reference/shadowgraph.h"
 #include "warp/image/picture.h"
 
@@ -23,20 +24,34 @@ int wrapped(int i, int n) {
     return r < 0 ? r + n : r;
 }
 
+/// key: what names it in the scene, or names `owner`, the file that does.
+Texture read_texture(const Scene& scene, const std::filesystem::path& file, const std::string& key,
+                     const std::filesystem::path& owner) {
+    try {
+        return Texture(file);
+    } catch (const FrameError& error) {
+        throw UserError(
+            fmt::format("{}: cannot use the texture {}: {}", place_of(scene, key, owner), file.string(), error.what()));
+    }
+}
+
+/// The scene's own, or that of a material of its mesh.
+Texture texture_of(const Scene& scene, const Material& material) {
+    const ObjectSpec& object = scene.objects[static_cast<std::size_t>(material.object)];
+    const bool own = object.texture == material.texture;
+    return read_texture(scene, *material.texture,
+                        fmt::format("object.{}.{}", material.object, own ? "texture" : "file"),
+                        own ? *object.texture : object.file.value());
+}
+
 }  // namespace
 
-Texture::Texture(const std::filesystem::path& file, const std::string& owner) {
-    LinearImage image;
-    bool gray = false;
-    try {
-        const Picture picture = read_picture(file);
-        const Part& part = picture.parts.front();
-        if (part.groups.empty() || part.groups.front().count == 0) throw FrameError("it has no colour channel");
-        image = load_group(part, part.groups.front());
-        gray = part.groups.front().count == 1;
-    } catch (const FrameError& error) {
-        throw UserError(fmt::format("{}: cannot use the texture {}: {}", owner, file.string(), error.what()));
-    }
+Texture::Texture(const std::filesystem::path& file) {
+    const Picture picture = read_picture(file);
+    const Part& part = picture.parts.front();
+    if (part.groups.empty() || part.groups.front().count == 0) throw FrameError("it has no colour channel");
+    const LinearImage image = load_group(part, part.groups.front());
+    const bool gray = part.groups.front().count == 1;
     width_ = image.data.width;
     height_ = image.data.height;
     rgb_.resize(image.data.area() * 3);
@@ -76,13 +91,13 @@ Shading::Shading(const Scene& scene, const Geometry& geometry) : scene_(scene), 
         int index = -1;
         if (material.texture) {
             const auto [entry, added] = known.try_emplace(*material.texture, static_cast<int>(textures_.size()));
-            if (added) textures_.emplace_back(*material.texture, fmt::format("{}: [[object]]", scene.file.string()));
+            if (added) textures_.push_back(texture_of(scene, material));
             index = entry->second;
         }
         texture_of_material_.push_back(index);
     }
     if (scene.background.image)
-        sky_.emplace(*scene.background.image, fmt::format("{}: [background]", scene.file.string()));
+        sky_ = read_texture(scene, *scene.background.image, "background.image", *scene.background.image);
 }
 
 dvec3 Shading::surface(const Hit& hit, const LightSample& sample, const Shadowgraph* bent) const {

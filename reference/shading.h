@@ -10,7 +10,7 @@
 /// hemisphere: this brings A where it meets nothing, else the sunlight and, without further rays, sky light A off what
 /// it meets (one bounce). The background picture lights nothing.
 ///
-/// Failures: UserError naming the scene's object or background and a texture that is missing or cannot be read.
+/// Failures: UserError naming file, line and key (scene_place.h) of a texture that is missing or cannot be read.
 #pragma once
 
 #include "reference/geometry.h"
@@ -28,8 +28,8 @@ struct LightSample {
 /// A picture in linear light, bilinear between pixel centres.
 class Texture {
   public:
-    /// owner: how messages name what it belongs to, e.g. "scene.toml: [background] image". UserError.
-    Texture(const std::filesystem::path& file, const std::string& owner);
+    /// FrameError if it cannot be read.
+    explicit Texture(const std::filesystem::path& file);
 
     /// u to the right, v up, one repeat is [0, 1]. wrap_v: repeats upwards too, else the last row goes on.
     dvec3 at(dvec2 uv, bool wrap_v = true) const;

@@ -34,7 +34,8 @@ struct Landing {
 }  // namespace
 
 Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const FieldInstant& field,
-                         const TraceSettings& camera_trace, int light_rays, Cancelled cancelled) {
+                         const TraceSettings& camera_trace, int light_rays, Cancelled cancelled,
+                         const LightWatch& watch) {
     const dvec3 light = glm::normalize(scene.light.value().direction);
     const int side = std::max(2, light_rays / kRaysPerTexel);
     for (std::size_t index = 0; index < scene.objects.size(); ++index) {
@@ -63,17 +64,19 @@ Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const Fie
         const auto columns = static_cast<std::size_t>(across + 2 * margin[0]);
         const auto rows = static_cast<std::size_t>(across + 2 * margin[1]);
         std::vector<Landing> landings(columns * rows);
+        if (watch.begins) watch.begins(static_cast<int>(index), static_cast<int>(rows));
         tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t j) {
             const double b = (static_cast<double>(j) + 0.5 - 0.5 * static_cast<double>(rows)) * spacing[1];
             for (std::size_t i = 0; i < columns; ++i) {
                 const double a = (static_cast<double>(i) + 0.5 - 0.5 * static_cast<double>(columns)) * spacing[0];
                 const dvec3 aim = quad.origin + a * right + b * up;
                 check_cancelled(cancelled);
-                const BentHit end =
-                    reference::trace(field, &geometry, aim - back * light, light, trace, nullptr, watch(cancelled));
+                const BentHit end = reference::trace(field, &geometry, aim - back * light, light, trace, nullptr,
+                                                     reference::watch(cancelled));
                 if (end.hit && end.surface.object == static_cast<int>(index))
                     landings[j * columns + i] = {true, end.surface.uv};
             }
+            if (watch.row_done) watch.row_done();
         });
 
         Map map{static_cast<int>(index), side, {}};

@@ -11,6 +11,8 @@
 /// greatest distance between any two of: camera, quads, and the bounds of spheres.
 #pragma once
 
+#include <functional>
+
 #include "reference/bent_ray.h"
 #include "reference/cancel.h"
 #include "warp/scene/scene.h"
@@ -20,12 +22,18 @@ namespace eikonal::reference {
 inline constexpr int kRaysPerTexel = 4;
 inline constexpr int kMostLightRays = 8192;
 
+/// Told while light rays are followed; either may be left out.
+struct LightWatch {
+    std::function<void(int object, int rows)> begins;  ///< a quad, of which so many rows of rays are followed
+    std::function<void()> row_done;                    ///< from any thread
+};
+
 /// Immutable, thread-safe. The same for any number of threads.
 class Shadowgraph {
   public:
     /// light_rays: 2 kRaysPerTexel … kMostLightRays. scene.light must be set. FrameError: cancelled.
     Shadowgraph(const Scene& scene, const Geometry& geometry, const FieldInstant& field, const TraceSettings& trace,
-                int light_rays, Cancelled cancelled = nullptr);
+                int light_rays, Cancelled cancelled = nullptr, const LightWatch& watch = {});
 
     /// Irradiance over that of the unobstructed sun at a hit: nothing for objects that have no map.
     std::optional<double> irradiance(const Hit& hit) const;

@@ -19,7 +19,7 @@ done
 # fact SCENE LABEL: the first words of a fact, up to a comma or bracket
 fact() { sed -n "s/^$2  *\([^,(]*[^,( ]\).*/\1/p" "out/compare/$1/errors.txt"; }
 table() {
-    echo '| Scene | True displacement, focusing | Model | p95 | stated p95 | p95 smooth | p95 near silhouettes | p99 | p95 frame to frame | SSIM | map + warp ms | times faster |'
+    echo '| Scene | True displacement, focusing | Model | p95 smooth | stated p95 | p95 near silhouettes | p95 | p99 | p95 frame to frame | SSIM | map + warp ms | times faster |'
     echo '|---|---|---|---|---|---|---|---|---|---|---|---|'
     for scene in "${scenes[@]}"; do
         title="[$scene]($scene.toml)"
@@ -30,8 +30,8 @@ table() {
             $1 == "none" { next }
             {
                 printf "| %s | %s | %s%s | %s | %s | %s | %s | %s | %s | %.3f | %s | %s |\n", title, facts, $1,
-                    $2 == 1 && $1 != "default" ? " (default)" : "", shown($column["p95"]), shown($column["stated_p95"]),
-                    shown($column["smooth_p95"]), shown($column["silhouette_p95"]),
+                    $2 == 1 && $1 != "default" ? " (default)" : "", shown($column["smooth_p95"]), shown($column["stated_p95"]),
+                    shown($column["silhouette_p95"]), shown($column["p95"]),
                     shown($column["p99"]), "temporal_p95" in column ? shown($column["temporal_p95"]) : "–",
                     $column["ssim"], shown($column["map_ms"] + $column["warp_ms"]), shown($column["times_faster"])
                 title = facts = ""

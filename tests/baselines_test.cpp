@@ -99,6 +99,15 @@ TEST(Mirage, LayersConvergeToTheBentRay) {
         before = off;
     }
     EXPECT_LT(before, 2e-3);
+    // It turns at a boundary, anywhere in a slice: of order 1/2 in the worst of many thicknesses.
+    const auto worst = [&](double slice) {
+        double off = 0;
+        for (int i = 0; i < 24; ++i)
+            off = std::max(off, std::abs(height(Integrator::Layers, slice * (1 + i / 48.0), turning) - truth));
+        return off;
+    };
+    const double thick = worst(1e-3), thin = worst(1e-3 / 64);
+    EXPECT_NEAR(std::log2(thick / thin) / 6, 0.5, 0.15);
     // A ray through all slices: order 2.
     const auto crossing = [&](Integrator integrator, double step) {
         TraceSettings settings = finest();
@@ -113,6 +122,31 @@ TEST(Mirage, LayersConvergeToTheBentRay) {
     const double coarse = std::abs(crossing(Integrator::Layers, 2e-3) - straight);
     const double fine = std::abs(crossing(Integrator::Layers, 5e-4) - straight);
     EXPECT_NEAR(std::log2(coarse / fine) / 2, 2, 0.2);
+}
+
+// They perturb the straight ray, which goes on down where the bent one turns back.
+TEST(Mirage, PerturbationsKnowNoTurningRays) {
+    const Air air({road(0.01)}, at_zero());
+    const auto wall = geometry({plane({60, 0, 0}, {-1, 0, 0})}), floor = geometry({plane({0, 0, 0}, {0, 1, 0})});
+    const double critical = std::sqrt(-2 * index_law(at_zero()).above_ambient(305));
+    const auto end = [&](const Geometry& objects, Integrator integrator, double angle) {
+        TraceSettings settings = finest();
+        settings.integrator = integrator;
+        settings.step = integrator == Integrator::Adaptive ? 0 : 0.001;
+        return trace(air.now, &objects, {0, 0.2, 0}, {std::cos(angle), -std::sin(angle), 0}, settings).at.x;
+    };
+    const auto off = [&](const Geometry& objects, Integrator integrator, double angle) {
+        return glm::length(end(objects, integrator, angle) - end(objects, Integrator::Adaptive, angle));
+    };
+    for (const Integrator integrator : {Integrator::FirstOrder, Integrator::SecondOrder})
+        EXPECT_GT(off(*wall, integrator, 0.7 * critical), 0.05);
+    // Steeper ones are the better the steeper they are, and meet the floor in the direction of a straight ray: where
+    // it lies oblique second order is no better than first.
+    for (const Integrator integrator : {Integrator::FirstOrder, Integrator::SecondOrder}) {
+        const double gentle = off(*floor, integrator, 2 * critical), steep = off(*floor, integrator, 10 * critical);
+        EXPECT_LT(gentle, 0.02);
+        EXPECT_LT(steep, gentle / 1000);
+    }
 }
 
 TEST(Mirage, MirrorReflectsBelowTheCriticalAngleOnly) {

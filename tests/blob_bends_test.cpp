@@ -154,5 +154,50 @@ TEST(BlobBends, ExtremesLeaveFiniteNodes) {
                 }
 }
 
+/// What is left out as out of sight never moves a pixel: sources and blobs all round the camera, at many times.
+TEST(BlobBends, WhatIsOutOfSightMovesNothing) {
+    constexpr double farthest = 10, strength = 40, negligible = 1e-3;
+    const RandomStream stream(3, "homes");
+    int out_of_sight = 0, in_sight = 0, moving = 0;
+    for (std::uint64_t i = 0; i < 400; ++i) {
+        const auto random = [&](std::uint64_t j) { return 2 * stream.uniform(16 * i + j) - 1; };
+        const Camera camera = camera_of(i % 2 ? Projection::Perspective : Projection::Orthographic, i % 2 ? 700 : 100);
+        const dvec3 from = camera.position + dvec3(8 * random(0), 3 * random(1), 14 * random(2));
+        const double sigma = 0.1 * std::exp2(2 * random(3));
+        BlobsSpec spec;
+        spec.seed = i;
+        if (i % 4 < 2) {
+            spec.blobs.push_back({from, sigma, 900});
+        } else {
+            spec.sources.push_back(
+                {from, from + dvec3(random(4), random(5), random(6)), 10, 900, sigma, 0.2, 0.01, 1.5});
+            spec.wind = WindSpec{i, 0.2, 1, {random(7), random(8), random(9)}};
+        }
+        const BlobCloud cloud(spec, IndexLaw{2.77e-4, 288.15, 293}, "medium.0");
+        const bool seen = may_be_seen(cloud.homes(), strength, camera, kTile, farthest, negligible);
+        (seen ? in_sight : out_of_sight) += 1;
+        double largest = 0;
+        for (const double t : {-3.1, 0.0, 0.7, 12.0})
+            for (const Band& band :
+                 BlobBends(cloud.at(t), strength, camera, farthest, 1).bands(kTile, kTile, farthest, farthest)) {
+                BandRow row;
+                for (int y = 0; y < 64; y += 9) {
+                    row.start(band, y);
+                    for (int x = 0; x < 512; x += 9) {
+                        const Shift d = row.at(x, farthest);
+                        largest = std::max({largest, double{std::abs(d.x)}, double{std::abs(d.y)}});
+                    }
+                }
+            }
+        moving += largest > negligible;
+        if (!seen) {
+            EXPECT_LE(largest, negligible) << i;
+        }
+    }
+    EXPECT_GT(out_of_sight, 100);
+    EXPECT_GE(in_sight, moving) << out_of_sight;
+    EXPECT_GT(moving, 10);
+}
+
 }  // namespace
 }  // namespace eikonal

@@ -73,6 +73,29 @@ TEST(PictureError, SeesOtherColours) {
     EXPECT_GT(picture_error(red, blue, kSide, kSide).visible, 0.5);
 }
 
+// L* of linear 0.5 is 76.07, so that white differs by 24; a code in 255 of grey is ΔE 0.4. Stripes moved by half their
+// width show wherever they are wide enough for the eye.
+TEST(PictureError, SeesOtherGreys) {
+    constexpr int kSide = 64;
+    const auto visible = [](const std::vector<float>& a, const std::vector<float>& b) {
+        return picture_error(a, b, kSide, kSide).visible;
+    };
+    EXPECT_EQ(visible(grey(kSide, kSide, 0), grey(kSide, kSide, 1)), 1);
+    EXPECT_EQ(visible(grey(kSide, kSide, 0.5F), grey(kSide, kSide, 1)), 1);
+    EXPECT_EQ(visible(grey(kSide, kSide, 0.5F), grey(kSide, kSide, 0.505F)), 0);
+    const auto stripes = [](int width, int moved) {
+        auto picture = grey(kSide, kSide, 0.2F);
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x)
+                for (std::size_t c = 0; c < 3; ++c)
+                    if ((x + moved) / width % 2 == 0) picture[4 * static_cast<std::size_t>(y * kSide + x) + c] = 0.8F;
+        return picture;
+    };
+    EXPECT_GT(visible(stripes(16, 0), stripes(16, 1)), 0.1) << "a displacement of a pixel shows at the edges";
+    EXPECT_LT(visible(stripes(16, 0), stripes(16, 1)), 0.4) << "and nowhere else";
+    EXPECT_GT(visible(stripes(8, 0), stripes(8, 4)), 0.4);
+}
+
 // Equal means, codes a ± d and a ∓ d in a checkerboard finer than the window: the structures are opposite.
 TEST(PictureError, SsimOfOppositeStructuresIsNegative) {
     constexpr int kSide = 32;
@@ -182,8 +205,8 @@ TEST(Page, IsWellFormedAndNeedsNothingElse) {
     c.picture_seconds = 1;
     c.models = {result("none", 0, 1), result("screens", 0.01, 0.1), result("table", 0, 0)};
     c.models.back().refusal = "needs form=\"lattice\" & more";
-    const std::string page =
-        comparison_page(c, {{"plate", "bytes", false, 0}, {"error: screens", "more", false, 0.5}}, 3);
+    const PagePicture plate{"plate", "bytes", false, 0}, heat{"error: screens", "more", false, 0.5};
+    const std::string page = comparison_page(c, {{3, {plate}}, {4, {plate, heat}}});
     EXPECT_TRUE(well_formed(page));
     EXPECT_FALSE(well_formed(page + "<p>"));
     EXPECT_EQ(page.find("http"), page.find("http://www.w3.org/1999/xhtml")) << "names of markup, no addresses";
@@ -193,6 +216,25 @@ TEST(Page, IsWellFormedAndNeedsNothingElse) {
     EXPECT_NE(page.find("a &lt;b&gt; &amp; &quot;c&quot;.toml"), std::string::npos);
     EXPECT_NE(page.find("needs form=&quot;lattice&quot; &amp; more"), std::string::npos);
     EXPECT_NE(page.find("from frame to frame"), std::string::npos);
+    EXPECT_NE(page.find("data-frame=\"3\">"), std::string::npos) << "the first frame is seen";
+    EXPECT_NE(page.find("data-frame=\"4\" hidden"), std::string::npos);
+    EXPECT_EQ(comparison_page(c, {{3, {plate}}}).find("class=\"frame\""), std::string::npos) << "nothing to choose";
+}
+
+TEST(Page, ShowsFramesEvenlySpread) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{2}, kMostPageFrames, kMostPageFrames + 1,
+                                    2 * kMostPageFrames, std::size_t{1000}}) {
+        std::vector<std::size_t> shown;
+        for (std::size_t i = 0; i < count; ++i)
+            if (on_page(i, count)) shown.push_back(i);
+        ASSERT_EQ(shown.size(), std::min(count, kMostPageFrames)) << count;
+        EXPECT_EQ(shown.front(), 0u);
+        EXPECT_EQ(shown.back(), count - 1);
+        const double even =
+            static_cast<double>(count - 1) / static_cast<double>(std::max<std::size_t>(shown.size() - 1, 1));
+        for (std::size_t k = 0; k < shown.size(); ++k)
+            EXPECT_NEAR(static_cast<double>(shown[k]), static_cast<double>(k) * even, 1);
+    }
 }
 
 TEST(Table, HasARowForEachModelThatApplies) {
@@ -311,7 +353,7 @@ TEST(Comparer, WrongModelsAreNamed) {
         settings.models = std::move(models);
         Scene scene = wall();
         BlobsSpec blobs;
-        blobs.blobs = {{}};
+        blobs.blobs = {{.center = {0, 1.5, -5}, .sigma = 0.5, .temperature = 900}};
         scene.media = {blobs};
         try {
             Comparer(scene, settings);

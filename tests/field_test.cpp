@@ -309,7 +309,8 @@ TEST(Field, WithoutAnIndexNothingBends) {
     EXPECT_EQ(largest(f.force_jet(inside, {0, 0, -1}).by_position), 0);
 }
 
-// A straight ray integrates to what the warp sums: √L³ lever_m(D) ∇⊥(gψ_m).
+// A straight ray integrates to what the warp sums: √L³ lever_m(D) M ∇⊥(gψ_m), which turns it by √L |∇⊥(gψ_m)| in every
+// direction across it: the part of the bend in its plane of slant is L times as long on the screen as across the ray.
 TEST(Field, ScreensBendStraightRaysAsTheWarpDoes) {
     Draw draw;
     for (const bool falloff : {false, true})
@@ -336,7 +337,11 @@ TEST(Field, ScreensBendStraightRaysAsTheWarpDoes) {
                         bend = g.n * bend +
                                double{psi.value} * (g.gradient - glm::dot(g.gradient, fr.forward) * fr.forward);
                     }
-                    const dvec3 part = force_strength(optics) * L * std::sqrt(L) * lever * bend;
+                    const dvec3 slant = glm::normalize(sx * fr.right + sy * fr.up), d = along / L;
+                    const dvec3 slanted = bend + (L - 1) * glm::dot(bend, slant) * slant;
+                    EXPECT_NEAR(glm::length(slanted - glm::dot(slanted, d) * d), glm::length(bend),
+                                1e-12 * glm::length(bend));
+                    const dvec3 part = force_strength(optics) * L * std::sqrt(L) * lever * slanted;
                     expected += part;
                     scale += glm::length(part);
                 }

@@ -111,6 +111,59 @@ TEST(Strides, AreLongButPassNoBlobOver) {
     }
 }
 
+// Above its layer a surface's force has a tail that never ends: it is straight air all the same.
+TEST(Strides, AreOneBeyondALayerOfAnyMedia) {
+    SurfaceSpec surface;
+    surface.surface_temperature = 330;
+    surface.dropoff = 0.02;
+    BlobsSpec blobs;
+    blobs.blobs = {{{0, 1, -10}, 0.1, 400}};
+    const Field field({surface, blobs}, {}, {}, std::uint64_t{1} << 30);
+    const FieldInstant now = field.at(0);
+    TraceSettings settings;
+    settings.pixel = 7e-5;
+    for (const Integrator integrator : {Integrator::Adaptive, Integrator::FirstOrder}) {
+        settings.integrator = integrator;
+        const BentHit end = trace(now, nullptr, {0, 2, 0}, glm::normalize(dvec3(0, 1e-5, -1)), settings);
+        EXPECT_EQ(end.end, BentHit::End::Escaped);
+        EXPECT_LT(end.steps, 50);
+    }
+}
+
+TEST(KnownOrigin, ChangesNoBit) {
+    SurfaceSpec surface;
+    surface.surface_temperature = 330;
+    surface.dropoff = 0.05;
+    ObjectSpec ground, sign;
+    sign.shape = ObjectShape::Quad;
+    sign.origin = {0, 0, -60};
+    sign.normal = {0, 0, 1};
+    sign.size = {2, 2};
+    Scene scene;
+    scene.objects = {ground, sign};
+    const Geometry geometry(scene, dvec3(0));
+    const Field field({surface}, {}, {}, std::uint64_t{1} << 30);
+    const FieldInstant now = field.at(0);
+    TraceSettings plain;
+    plain.pixel = 7e-5;
+    plain.lone = std::make_shared<LoneSurface>(surface, OpticsSpec{});
+    TraceSettings known = plain;
+    const dvec3 eye{0, 1.5, 0};
+    known.start_at(now, eye);
+    for (const Integrator integrator : {Integrator::Adaptive, Integrator::FirstOrder, Integrator::SecondOrder})
+        for (int i = 0; i < 50; ++i) {
+            plain.integrator = known.integrator = integrator;
+            const dvec3 d = glm::normalize(dvec3(0.001 * (i % 7), -0.002 * i, -1));
+            const BentHit a = trace(now, &geometry, eye, d, plain), b = trace(now, &geometry, eye, d, known);
+            EXPECT_EQ(a.at.x, b.at.x);
+            EXPECT_EQ(a.at.p, b.at.p);
+            EXPECT_EQ(a.hit, b.hit);
+            // Settings that know another place are no worse.
+            const dvec3 beside = eye + dvec3(0.5, 0, 0);
+            EXPECT_EQ(trace(now, &geometry, beside, d, plain).at.x, trace(now, &geometry, beside, d, known).at.x);
+        }
+}
+
 TEST(ClosedForm, OfBlobsIsFirstOrdersIntegral) {
     Shot shot({crowd(600)});
     TraceSettings closed = shot.settings, integral = shot.settings;

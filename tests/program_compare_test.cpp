@@ -43,11 +43,11 @@ TEST_F(Compare, LeavesTablesPicturesPlotAndPage) {
     EXPECT_EQ(ended.err, "");
     EXPECT_NE(ended.out.find("first-order (default)"), std::string::npos) << ended.out;
     EXPECT_NE(ended.out.find("from frame to frame"), std::string::npos) << ended.out;
-    EXPECT_EQ(
-        files("deep/out"),
-        (Words{"error-first-order.0001.png", "error-first-order.0002.png", "error-none.0001.png", "error-none.0002.png",
-               "errors.csv", "errors.txt", "frontier.svg", "index.html", "plate.0001.png", "plate.0002.png",
-               "truth.0001.png", "truth.0002.png", "warp-first-order.0001.png", "warp-first-order.0002.png"}));
+    EXPECT_EQ(files("deep/out"),
+              (Words{"change-first-order.0002.png", "change-none.0002.png", "error-first-order.0001.png",
+                     "error-first-order.0002.png", "error-none.0001.png", "error-none.0002.png", "errors.csv",
+                     "errors.txt", "frontier.svg", "index.html", "plate.0001.png", "plate.0002.png", "truth.0001.png",
+                     "truth.0002.png", "warp-first-order.0001.png", "warp-first-order.0002.png"}));
     EXPECT_EQ(ended.out.find(bytes("deep/out/errors.txt")), 0u);
     EXPECT_NE(bytes("deep/out/index.html").find("data:image/png;base64,"), std::string::npos);
     const Pixels heat = read("deep/out/error-first-order.0001.png");

@@ -122,13 +122,15 @@ TEST_F(InputTest, DepthThatDoesNotFit) {
         more.insert(more.begin(), {"--depth", depth_option});
         return warp("in.exr", "out.exr", more);
     };
-    refused(with("none.exr"), 1, {"frame 1", "none.exr", "does not exist"});
+    refused(with("none.exr"), 1, {"frame 1", "depth map", "none.exr", "does not exist; check the name"});
     refused(with(":Z"), 2, {"in.exr", "'Z'", "R, G, B"});
     refused(with("in.png:R"), 2, {"in.png", "integers", "--depth-range"});
     refused(with("in.png"), 2, {"in.png", "FILE:CHANNEL"});
     refused(with("in.png:R", {"--depth-range", "3,3"}), 2, {"--depth-range"});
     refused(with("in.png:R", {"--depth-range", "0,3", "--depth-type", "inverse"}), 2, {"--depth-range", "positive"});
-    refused(with("air.mov"), 2, {"--depth", "movie"});
+    refused(with("air.mov"), 2, {"--depth", "movie", "depth.%04d.png"});
+    refused(warp("in.exr", "out.exr", {"--mask", "air.mov"}), 2, {"--mask", "movie", "mask.%04d.png"});
+    refused(warp("in.exr", "out.exr", {"--mask", "none.exr"}), 1, {"frame 1", "none.exr", "exist; check the name"});
     refused(with(""), 2, {"--depth"});
     depth(
         "small.exr", [](int, int) { return 10.f; }, 32);
@@ -207,11 +209,35 @@ TEST_F(InputTest, ImplausibleCompanions) {
     write_text("short.chan", "2 0 1.5 0 0 0 0\n3 0 1.5 0 0 0 0\n");
     warned({"--set", "camera.path=short.chan"}, "'short.chan' holds frames 2 to 3, but frames 1 to 3 are made");
     silent(warp("in.exr", "out.####.exr", {"--set", "camera.path=short.chan", "--overwrite", "--frames", "2-3"}));
+    warned({"--ground", "1.5,120%"}, "ground: the horizon, row 57.6, lies below the 48 rows of the picture");
+    warned({"--ground", "1e6,50%"}, "ground: 1e+06 m below the camera, it is nowhere in the picture");
+    warned({"--set", "medium.0.lattice=[2, 2, 2, 2]"}, "medium.0: moves nothing: of two samples a period");
+    silent(warp("in.exr", "out.0001.exr", {"--set", "medium.0.lattice=[2, 2, 2, 2]", "--gain", "0", "--overwrite"}));
     paint("grey.png", OIIO::ImageSpec(kWidth, kHeight, 3, OIIO::TypeDesc::UINT8), [](int, int, int) { return 0.5f; });
     silent(warp("in.exr", "out.exr", {"--mask", "grey.png"}));
     const Ended verbose = warp("in.exr", "out.exr", {"--mask", "grey.png", "--overwrite", "-v"});
     EXPECT_NE(verbose.err.find("mask: channel 'R' of 'grey.png', which has R, G, B"), std::string::npos) << verbose.err;
     refused(warp("in.exr", "p.exr", {"--mask", "in.png"}), 2, {"in.png", "which channel", "R, G, B"});
+}
+
+// NaN and infinity stay where nothing moves, and become finite where something does, which is told once a run.
+TEST_F(InputTest, PlatesThatAreNotFinite) {
+    const auto colour = [](int x, int y, int c) {
+        return y == 9 && x == 7 ? kNan : y == 9 && x == 40 && c == 1 ? kInf : 0.5f;
+    };
+    const OIIO::ImageSpec half(kWidth, kHeight, 3, OIIO::TypeDesc::HALF);
+    for (const char* f : {"1", "2"}) paint("s.000" + std::string(f) + ".exr", half, colour);
+    paint("right.exr", OIIO::ImageSpec(kWidth, kHeight, 1, OIIO::TypeDesc::HALF),
+          [](int x, int, int) { return x < 20 ? 0.0f : 1.0f; });
+    const Ended ended = warp("s.####.exr", "o.####.exr", {"--mask", "right.exr"});
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_EQ(ended.lines().size(), 1u) << ended.err;
+    EXPECT_NE(ended.err.find("warning: 's.0001.exr': 4 colour values are NaN or infinite"), std::string::npos)
+        << ended.err;
+    const Pixels out = read("o.0002.exr");
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) ASSERT_EQ(std::isnan(out.at(x, y, 0)), x == 7 && y == 9) << x << " " << y;
+    EXPECT_TRUE(std::isfinite(out.at(40, 9, 1)));
 }
 
 TEST_F(InputTest, TinyPictures) {

@@ -79,6 +79,66 @@ TEST_F(MovieTest, MovieToMovieKeepsItsFacts) {
     EXPECT_NE(again.err.find("already there and kept"), std::string::npos);
 }
 
+// A movie that is there is kept if it can be what is asked for.
+TEST_F(MovieTest, MoviesThatAreThere) {
+    make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
+    for (const char* name : {"o.mp4", "o.mkv"}) {
+        SCOPED_TRACE(name);
+        const std::string out = name;
+        silent(warp("a.mp4", out));
+        const std::string whole = bytes(out);
+        refused(warp("a.mp4", out, {"--frames", "3-6"}), 2, {"-o", out, "12 frames", "the 4 that", "--overwrite"});
+        EXPECT_EQ(warp("a.mp4", out).lines(),
+                  Words{"eikonal: '" + out + "' is already there and kept (12 frames); --overwrite makes it anew"});
+        plate("in.png");
+        paint("big.png", OIIO::ImageSpec(128, 48, 3, OIIO::TypeDesc::UINT8), [](int, int, int) { return 0.5f; });
+        refused(warp("big.png", out, {"--frames", "1-12"}), 2, {"-o", out, "64 x 48", "128 x 48", "--overwrite"});
+        EXPECT_EQ(bytes(out), whole);
+        for (const std::string& damage : {whole.substr(0, whole.size() * 6 / 10), std::string("this is a letter")}) {
+            write_text(out, damage);
+            EXPECT_EQ(warp("a.mp4", out).lines(), Words{"eikonal: '" + out + "' is damaged and made anew"});
+            EXPECT_EQ(bytes(out), whole);
+        }
+    }
+}
+
+TEST_F(MovieTest, OggTakesTheora) {
+    make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-an"});
+    silent(warp("a.mp4", "b.ogv"));
+    EXPECT_EQ(facts("b.ogv").codecs, Words{"theora"});
+    EXPECT_NE(warp("a.mp4", "b.ogv").err.find("already there and kept;"), std::string::npos);
+}
+
+// Its length is not told: the number of frames is known at the end.
+TEST_F(MovieTest, TransportStreams) {
+    make_clip("a.ts", {"-c:v", "mpeg2video", "-c:a", "mp2"});
+    const Ended ended = warp("a.ts", "b.ts", {"--progress", "plain"});
+    EXPECT_EQ(ended.status, 0);
+    ASSERT_EQ(ended.lines().size(), 1u) << ended.err;
+    EXPECT_TRUE(ended.err.starts_with("12 frames, ")) << ended.err;
+    EXPECT_EQ(facts("b.ts").frames, "12");
+    EXPECT_EQ(facts("b.ts").codecs, facts("a.ts").codecs);
+}
+
+TEST_F(MovieTest, FieldOrderIsKept) {
+    for (const auto& [name, codec] : {std::pair{"a.mp4", "libx264"}, {"b.mkv", "mpeg2video"}, {"c.mov", "prores_ks"}}) {
+        SCOPED_TRACE(name);
+        make_clip(name,
+                  {"-vf", "interlace=scan=tff", "-c:v", codec, "-flags", "+ildct", "-x264-params", "tff=1", "-an"});
+        const std::string out = std::string("o.") + name;
+        const Ended ended = warp(name, out);
+        EXPECT_EQ(ended.status, 0);
+        EXPECT_NE(ended.err.find("is interlaced"), std::string::npos) << ended.err;
+        const auto fields = [&](const std::string& file) {
+            return tool({"ffprobe", "-v", "error", "-show_entries",
+                         "stream=codec_name,field_order:frame=interlaced_frame,top_field_first", "-of", "csv", file})
+                .out;
+        };
+        EXPECT_EQ(fields(out), fields(name));
+        EXPECT_NE(fields(out).find("frame,1,1"), std::string::npos) << fields(out);
+    }
+}
+
 // ffmpeg begins the video of such a file when the sound's padding is over, and tags it with when it ends.
 TEST_F(MovieTest, MatroskaWhoseVideoBeginsLater) {
     silent(tool({"ffmpeg", "-v", "error", "-f", "lavfi", "-i", "testsrc2=size=64x48:rate=24:duration=2", "-f", "lavfi",

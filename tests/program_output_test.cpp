@@ -58,6 +58,35 @@ TEST_F(OutputTest, FinishedFramesAreKept) {
     EXPECT_NE(fs::last_write_time(path("o.0001.exr")), time);
 }
 
+// What lies there under an output's name is kept if it is whole, made anew if it is not, and refused if it may be
+// another picture.
+TEST_F(OutputTest, DamagedFramesAreMadeAnewAndOthersRefused) {
+    const Words words{"warp", "in.exr", "-o", "o.####.exr", "--scene", "air.toml", "--frames", "1-4"};
+    silent(run(words));
+    const std::string whole = bytes("o.0002.exr");
+    write_text("o.0002.exr", whole.substr(0, whole.size() * 9 / 10));
+    write_text("o.0003.exr", "this is no picture");
+    const Ended again = run(words);
+    EXPECT_EQ(again.status, 0);
+    EXPECT_EQ(again.lines(), (Words{"eikonal: 2 frames are already there and kept; --overwrite makes them anew",
+                                    "eikonal: 'o.0002.exr' and 1 more are damaged and made anew"}));
+    EXPECT_EQ(bytes("o.0002.exr"), whole);
+    EXPECT_EQ(run(words).lines(), Words{"eikonal: 4 frames are already there and kept; --overwrite makes them anew"});
+    depth(
+        "o.0004.exr", [](int, int) { return 1.f; }, 32);
+    const std::string precious = bytes("o.0004.exr");
+    refused(run(words), 2, {"-o", "o.0004.exr", "32 x 48", "64 x 48", "--overwrite"});
+    EXPECT_EQ(bytes("o.0004.exr"), precious);
+    Words anew = words;
+    anew.push_back("--overwrite");
+    silent(run(anew));
+    silent(run({"field", "--scene", "air.toml", "-o", "f.####.exr"}));
+    EXPECT_NE(
+        run({"field", "--scene", "air.toml", "-o", "f.####.exr", "--frame", "7"}).err.find("16 frames are already"),
+        std::string::npos)
+        << "slices of another frame would be mistaken for this one's";
+}
+
 TEST_F(OutputTest, Report) {
     fs::create_directory(path("bad"));
     plate("s.0001.exr");

@@ -106,6 +106,72 @@ TEST_F(PictureTest, ZeroDisplacementKeepsEveryBit) {
     EXPECT_EQ(stored("nothing.png"), stored("b.png"));
 }
 
+// A photograph taken upright comes out upright, in whatever format: what a viewer shows of it, and so does the air.
+TEST_F(PictureTest, PhotographsAreTurnedUpright) {
+    ImageSpec turned(kHeight, kWidth, 3, TypeDesc::UINT8);
+    turned.attribute("Orientation", 6);
+    paint("turned.tif", turned, [](int x, int y, int c) { return code(kWidth - 1 - y, x, c); });
+    paint("upright.tif", ImageSpec(kWidth, kHeight, 3, TypeDesc::UINT8), code);
+    plate("p.png");
+    silent(tool({"oiiotool", "p.png", "--attrib:type=int", "Orientation", "8", "-o", "p.jpg"}));
+    silent(tool({"oiiotool", "p.jpg", "--reorient", "-o", "shown.png"}));
+    still("p.jpg", "still.png");
+    EXPECT_EQ(read("still.png").spec.width, kHeight);
+    EXPECT_EQ(stored("still.png"), stored("shown.png"));
+    for (const char* out : {"out.tif", "out.png", "out.exr"}) {
+        SCOPED_TRACE(out);
+        still("turned.tif", out);
+        const std::string unmoved = stored(out);
+        still("upright.tif", out);
+        EXPECT_EQ(unmoved, stored(out));
+        warp("turned.tif", out, {"--ground", "1.5,40%", "--displacement", "a.exr"});
+        const std::string moved = stored(out);
+        EXPECT_EQ(read(out).spec.get_int_attribute("Orientation", 1), 1);
+        warp("upright.tif", out, {"--ground", "1.5,40%", "--displacement", "b.exr"});
+        EXPECT_EQ(moved, stored(out));
+        EXPECT_NE(moved, unmoved);
+        EXPECT_EQ(stored("a.exr"), stored("b.exr"));
+    }
+}
+
+// The number of a file given alone is its frame where sequences have it, so that a farm may be given file by file.
+TEST_F(PictureTest, AFileOfASequenceGivenAlone) {
+    plate("p.1002.exr");
+    plate("IMG_1234.exr");
+    plate("p.12.exr");
+    const auto one = [&](const std::string& in, Words more = {}) {
+        more.insert(more.begin(), {"warp", in, "-o", "o.exr", "--scene", "air.toml", "--overwrite"});
+        return run(std::move(more));
+    };
+    warp("p.####.exr", "s.####.exr");
+    const Ended alone = one("p.1002.exr");
+    EXPECT_EQ(alone.lines(), Words{"eikonal: 'p.1002.exr' gets the air of frame 1002, as its name says; --frames names "
+                                   "another"});
+    EXPECT_EQ(stored("o.exr"), stored("s.1002.exr"));
+    silent(one("p.1002.exr", {"--frames", "1"}));
+    const std::string first = stored("o.exr");
+    EXPECT_NE(first, stored("s.1002.exr"));
+    const Ended photograph = one("IMG_1234.exr");
+    EXPECT_EQ(photograph.lines(), Words{"eikonal: 'IMG_1234.exr' gets the air of frame 1, as a still; --frames 1234 if "
+                                        "it is that of a sequence"});
+    EXPECT_EQ(stored("o.exr"), first);
+    silent(one("p.12.exr"));
+    EXPECT_EQ(stored("o.exr"), first);
+    refused(one("none.1002.exr"), 1, {"frame 1002", "none.1002.exr"});
+}
+
+TEST_F(PictureTest, PnmIsNamedByWhatItHolds) {
+    plate("in.png");
+    paint("grey.png", ImageSpec(kWidth, kHeight, 1, TypeDesc::UINT8), code);
+    refused(run({"warp", "in.png", "-o", "out.pgm"}), 1, {"frame 1", "out.pgm", "name it .ppm"});
+    refused(run({"warp", "grey.png", "-o", "out.ppm"}), 1, {"frame 1", "out.ppm", "name it .pgm"});
+    EXPECT_FALSE(fs::exists(path("out.pgm")) || fs::exists(path("out.ppm")));
+    still("in.png", "out.ppm");
+    still("grey.png", "out.pgm");
+    EXPECT_EQ(bytes("out.ppm").substr(0, 2), "P6");
+    EXPECT_EQ(bytes("out.pgm").substr(0, 2), "P5");
+}
+
 TEST_F(PictureTest, WindowsChannelsMetadataKept) {
     make_rich("in.exr");
     warp("in.exr", "out.exr");

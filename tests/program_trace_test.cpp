@@ -90,18 +90,25 @@ TEST_F(Trace, ScenesThatCannotBeRenderedSayWhy) {
     refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml", "[[object]]"});
     const auto object = [&](const std::string& text) { write_text("scene.toml", "[[object]]\n" + text); };
     object("shape = \"mesh\"\nfile = \"none.obj\"\n");
-    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"none.obj"});
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml:3: object.0.file: ", "none.obj"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--set", "object.0.file=other.obj"}), 2,
+            {"scene.toml: object.0.file: ", "other.obj"});
     object("shape = \"mesh\"\nfile = \"bad.obj\"\n");
     for (const char* text :
          {"", "rubbish\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}) {
         write_text("bad.obj", text);
-        refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"bad.obj"});
+        refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml:3: object.0.file: ", "bad.obj"});
     }
+    write_text("bad.obj", "mtllib bad.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    write_text("bad.mtl", "newmtl m\nmap_Kd gone.png\n");
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml:3: object.0.file: ", "gone.png"});
     object("texture = \"none.png\"\n");
-    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"none.png"});
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml:2: object.0.texture: ", "none.png"});
     write_text("bad.png", "no picture");
-    object("texture = \"bad.png\"\n");
-    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"bad.png"});
+    object("texture = \"bad.png\"\n[background]\nimage = \"worse.png\"\n");
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml:2: object.0.texture: ", "bad.png"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--set", "object.0.texture="}), 2,
+            {"scene.toml:4: background.image: ", "worse.png"});
     for (const char* integrator : {"layers", "mirror"}) {
         wall(kBlob);
         refuses(render({"scene.toml", "-o", "a.exr", "--integrator", integrator}), 2, {"surface"});
@@ -123,6 +130,58 @@ TEST_F(Trace, ACameraWithinASphereIsPointedOut) {
     const Ended ended = render({"scene.toml", "-o", "a.exr", "--samples", "1"});
     EXPECT_EQ(ended.status, 0);
     EXPECT_NE(ended.err.find("warning: the camera is inside object.0 \"dome\""), std::string::npos) << ended.err;
+}
+
+TEST_F(Trace, ACameraBelowAHeatedSurfaceIsRefused) {
+    wall("position = [0, -3, 0]\n" + kSurface);
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml: medium.0.origin", "2 m below"});
+    // No air at all, and none that is heated.
+    EXPECT_EQ(render({"scene.toml", "-o", "a.exr", "--straight", "--samples", "1"}).status, 0);
+    EXPECT_EQ(
+        render({"scene.toml", "-o", "b.exr", "--samples", "1", "--set", "medium.0.surface_temperature=293.15"}).status,
+        0);
+}
+
+TEST_F(Trace, RaysThatDoNotEndAreToldBeforeTheyCostHours) {
+    wall("[[medium]]\ntype = \"profile\"\nprofile = \"rod\"\ng = 1e6\n");
+    const Words large{"--set", "camera.resolution=[1920,1080]"};
+    Words words{"scene.toml", "-o", "a.exr", "--explain"};
+    words.insert(words.end(), large.begin(), large.end());
+    const auto start = std::chrono::steady_clock::now();
+    const Ended explained = render(words);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    EXPECT_EQ(explained.status, 0) << explained.err;
+    EXPECT_LT(took.count(), 60);  // hours, if nothing stopped it
+    EXPECT_NE(explained.out.find("did not end within 2000 steps"), std::string::npos) << explained.out;
+    EXPECT_NE(explained.out.find("--step-budget"), std::string::npos) << explained.out;
+    EXPECT_EQ(names(), Words{"scene.toml"});
+    const Ended rendered = render({"scene.toml", "-o", "a.exr", "--samples", "1", "--set", "camera.resolution=[4,3]"});
+    EXPECT_EQ(rendered.status, 0) << rendered.err;
+    EXPECT_NE(rendered.err.find("of 64 rays tried did not end within 2000 steps"), std::string::npos) << rendered.err;
+    // Usual air is rendered without a word.
+    wall(kSurface);
+    const Ended usual = render({"scene.toml", "-o", "b.exr", "--samples", "1"});
+    EXPECT_EQ(usual.err.find("warning"), std::string::npos) << usual.err;
+}
+
+TEST_F(Trace, ACameraWithinAClosedMeshIsPointedOut) {
+    write_text("box.obj",
+               "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+               "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    write_text("scene.toml",
+               "[camera]\nresolution = [8, 6]\nposition = [0, 0, 0]\n[[object]]\nshape = \"mesh\"\n"
+               "name = \"box\"\nfile = \"box.obj\"\n");
+    const auto said = [&](const std::string& position) {
+        const Ended ended = render({"scene.toml", "-o", "a.exr", "--overwrite", "--samples", "1", "--set", position});
+        EXPECT_EQ(ended.status, 0) << ended.err;
+        return ended.err.find("warning: the camera is inside object.0 \"box\"") != std::string::npos;
+    };
+    EXPECT_TRUE(said("camera.position=[0, 0, 0]"));
+    EXPECT_TRUE(said("camera.position=[0.9, -0.3, 0.5]"));
+    EXPECT_FALSE(said("camera.position=[0, 0, 3]"));
+    // A face is missing: not closed.
+    write_text("box.obj", "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nf 1 2 3 4\n");
+    EXPECT_FALSE(said("camera.position=[0, 0, 0]"));
 }
 
 TEST_F(Trace, RaysWithoutIndexAreReportedAndBlack) {
@@ -259,6 +318,14 @@ TEST_F(Trace, PathIsTheParabola) {
     EXPECT_EQ(written.status, 0);
     EXPECT_EQ(written.out, "");
     EXPECT_EQ(bytes("ray.csv"), printed.out);
+    // The last row is the length itself, wherever the medium ends.
+    write_text("lens.toml", "[[medium]]\ntype = \"profile\"\nprofile = \"luneburg\"\n");
+    for (const std::string length : {"7", "1.1339745962155614", "1.1339745962156", "1.13397459622", "1.2"}) {
+        const Ended ended =
+            trace({"path", "lens.toml", "--origin=-2,0.5,0", "--direction", "1,0,0", "--length", length});
+        EXPECT_EQ(ended.out.substr(ended.out.rfind('\n', ended.out.size() - 2) + 1).rfind(length + ",", 0), 0u)
+            << ended.out;
+    }
     Words wrong = words;
     wrong[5] = "0,0,0";
     refuses(trace(wrong), 2, {"--direction", "zero"});

@@ -54,6 +54,8 @@ TEST_F(UsageTest, CommandsAndOptions) {
     wrong_warp({"--filter", "cubik"}, {"--filter", "'cubik'", "bilinear|cubic|lanczos3|area", "did you mean 'cubic'"});
     wrong_warp({"--model", "screns"}, {"--model", "did you mean 'screens'"});
     wrong_warp({"--distance"}, {"--distance", "missing"});
+    wrong_warp({"-o", "twice.png"}, {"--output", "more than once"});
+    wrong_warp({"--frames", "1", "--frames", "2"}, {"--frames", "more than once"});
     for (const char* text : {"nan", "five", "1e999", "5m"})
         wrong_warp({"--distance", text}, {"--distance", "'" + std::string(text) + "'"});
     wrong_warp({"--distance", "0"}, {"--distance", "from 1e-12"});
@@ -68,7 +70,6 @@ TEST_F(UsageTest, CommandsAndOptions) {
     wrong_warp({"--ground", "2"}, {"--ground", "HEIGHT,HORIZON"});
     wrong_warp({"--ground", "-2,50%"}, {"--ground", "-2"});
     wrong_warp({"--ground", "1.5,0.45"}, {"--ground", "0.45", "did you mean 45%?"});
-    silent(run({"warp", "in.png", "-o", "outside.png", "--ground", "1.5,120%"}));
     wrong_warp({"--depth-range", "5", "--depth", "in.png"}, {"--depth-range", "NEAR,FAR"});
 }
 
@@ -99,6 +100,7 @@ TEST_F(UsageTest, FrameLists) {
         wrong({"warp", "in.png", "-o", "o.####.png", "--frames", text},
               {"--frames '" + std::string(text) + "'", "1-9x2"});
     }
+    wrong({"warp", "in.png", "-o", "o.####.png", "--frames", "1-100000000000"}, {"--frames", "±2147483647"});
     wrong_warp({"--frames", "1-4"}, {"-o", "out.png", "4 frames", "out.####.png"});
     silent(run({"map", "--scene", "air.toml", "-o", "m.####.exr", "--frames", "-2--1,1-5x2,8-4:2,7"}));
     EXPECT_EQ(names(), (Words{"air.toml", "in.png", "m.-0001.exr", "m.-0002.exr", "m.0001.exr", "m.0003.exr",
@@ -160,6 +162,7 @@ TEST_F(UsageTest, OutputsThatCannotBe) {
     };
     output("out.xyz", {"-o", "out.xyz", "'.xyz'"});
     output("out", {"-o", "'out'"});
+    output("out.pbm", {"-o", "out.pbm", "'.pbm'"});
     output("", {"-o", "no file name"});
     output("missing/out.png", {"-o", "'missing'", "does not exist"});
     output("folder.png", {"-o", "folder.png", "is a folder"});

@@ -353,7 +353,7 @@ TEST_F(ReferenceTest, BadScenesNameWhatIsWrong) {
     expect_user_error([&] { Renderer(scene_with({plane}), straight(1)); }, {"scene.toml", "broken.png"});
     Scene sky = scene_with({ObjectSpec{}});
     sky.background.image = folder_ / "gone.exr";
-    expect_user_error([&] { Renderer(sky, straight(1)); }, {"[background]", "gone.exr"});
+    expect_user_error([&] { Renderer(sky, straight(1)); }, {"background.image", "gone.exr"});
 }
 
 // What the library that reads meshes would take for 0.

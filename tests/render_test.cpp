@@ -222,6 +222,22 @@ TEST(Render, RaysWithoutAnEndAreMarkedAndBlack) {
         s.rays.step_budget = 10;
         EXPECT_GT(Renderer(scene, s).render(1).trapped(), 0u) << exaggeration;
     }
+    // What is tried first takes no more steps than it may, and tells how long the rest can go on.
+    {
+        Scene scene = scene_with({quad({0, 1.5, -20}, {0, 0, 1}, 100, {1, 1, 1})});
+        ProfileSpec rod;
+        rod.profile = ProfileKind::Rod;
+        rod.g = 1e6;
+        scene.media = {rod};
+        const Probe probe = Renderer(scene, settings()).probe(1, {.first = 8, .most = 32, .seconds = 1e9, .steps = 50});
+        EXPECT_EQ(probe.pixels.width, 32);
+        EXPECT_EQ(probe.step_limit, 50);
+        EXPECT_EQ(probe.pixels.trapped(), 32u);
+        for (const float steps : probe.pixels.steps) EXPECT_LE(steps, 50);
+        const auto [low, high] = probe.time(64, 0, 5000);
+        EXPECT_NEAR(high / low, 100, 1e-6);
+        EXPECT_NEAR(low, 2 * probe.seconds, 1e-9);
+    }
     // Nothing but marks: the camera itself where there is no index.
     Scene scene = scene_with({quad({0, 1.5, -20}, {0, 0, 1}, 100, {1, 1, 1})});
     ProfileSpec rod;

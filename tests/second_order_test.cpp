@@ -145,24 +145,57 @@ TEST(StatedError, FindsAnErrorThatIsPutIntoAMap) {
     EXPECT_NEAR(shifted.p95, 0.5, 0.03);
 }
 
-// Samples stand for equal parts of the map, near and far.
+// Samples stand for equal parts of the map, near and far, but for what lies beside the edge between.
 TEST(StatedError, SamplesAreSpreadOverDepthAsTheMapIs) {
     std::vector<float> metres(kWindow.area(), 300);
     for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth / 8; ++x)
-            metres[static_cast<std::size_t>(y * kWidth + x)] = 5;
+        for (int x = 0; x < kWidth / 8; ++x) metres[static_cast<std::size_t>(y * kWidth + x)] = 5;
     const DepthPlane plane(kWindow, metres);
     std::vector<float> uv(2 * kWindow.area());
-    for (std::size_t i = 0; i < uv.size(); ++i) uv[i] = static_cast<float>(i % 17);
+    for (std::size_t i = 0; i < uv.size(); ++i) uv[i] = static_cast<float>(i % 3);
     const std::vector<SamplePixel> samples = choose_samples(kWindow, &plane, uv.data(), kErrorSamples);
     ASSERT_EQ(samples.size(), kErrorSamples);
     const auto near = std::count_if(samples.begin(), samples.end(), [](const SamplePixel& p) { return p.depth == 5; });
-    EXPECT_NEAR(static_cast<double>(near) / kErrorSamples, 1.0 / 8, 0.02);
+    EXPECT_NEAR(static_cast<double>(near) / kErrorSamples, (kWidth / 8.0 - kEdgeReach) / (kWidth - 2 * kEdgeReach),
+                0.02);
     for (const SamplePixel& p : samples) {
         const auto i = static_cast<std::size_t>(p.y * kWidth + p.x);
         EXPECT_EQ(p.depth, metres[i]);
         EXPECT_EQ(p.map.x, uv[2 * i]);
+        EXPECT_TRUE(p.x < kWidth / 8 - kEdgeReach || p.x >= kWidth / 8 + kEdgeReach) << p.x;
     }
+}
+
+// Edges everywhere: then their pixels must do.
+TEST(StatedError, EdgesAreSampledWhereThereIsNothingElse) {
+    std::vector<float> metres(kWindow.area());
+    for (std::size_t i = 0; i < metres.size(); ++i) metres[i] = i % 4 == 0 ? 5 : 300;
+    const DepthPlane plane(kWindow, metres);
+    const std::vector<float> uv(2 * kWindow.area());
+    EXPECT_EQ(choose_samples(kWindow, &plane, uv.data(), kErrorSamples).size(), kErrorSamples);
+}
+
+// A wall that recedes: its pixels are facets to the map, and one surface to the rays that judge.
+TEST(StatedError, MeetsTheSurfaceBetweenPixels) {
+    std::vector<float> metres(kWindow.area());
+    for (std::size_t i = 0; i < metres.size(); ++i)
+        metres[i] = 1 / (0.02F + 0.0004F * static_cast<float>(i % static_cast<std::size_t>(kWidth)));
+    const DepthPlane plane(kWindow, metres);
+    Band band;
+    band.perspective = true;
+    band.depths = {10, 50};
+    band.interpolation = DepthInterpolation::Hermite;
+    band.cover({40, 20, 1, 1});
+    // X = 3 (z - 10): d = 3 - 30/z, so that d = 3 - 30 (0.02 + 0.0004 (40 + d)) has the solution 1.92/1.012
+    for (std::size_t k = 0; k < 2; ++k)
+        for (int c = 0; c < band.columns; ++c)
+            for (int r = 0; r < band.rows; ++r) band.row(r, k)[c] = Node{k == 0 ? 0.0F : 120.0F, 0, 3, 0};
+    const std::vector<Band> bands{band};
+    BandRows row;
+    row.start(bands, 20);
+    const Shift d = meet_surface(row, plane, true, 40, 20, row.at(40, metres[42]));
+    EXPECT_NEAR(d.x, 1.92 / 1.012, 1e-4);
+    EXPECT_EQ(d.y, 0);
 }
 
 // Before a wall with a post in front of it, the ray that judges meets the depth buffer as the map's does.

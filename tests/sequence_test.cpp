@@ -75,6 +75,46 @@ TEST(Frames, BadInputNamesTheText) {
     }
 }
 
+TEST(Frames, NumbersBeyondTheLimitNameIt) {
+    for (const char* text : {"1-100000000000", "99999999999", "5,-99999999999", "2147483648"}) {
+        try {
+            parse_frames(text);
+            ADD_FAILURE() << "accepted '" << text << "'";
+        } catch (const UserError& error) {
+            EXPECT_NE(std::string(error.what()).find("±2147483647"), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(Pattern, NumberInTheNameOfASingleFile) {
+    struct Case {
+        const char* name;
+        int number;  ///< 0: none
+        bool after_dot;
+    };
+    for (const Case& c : {Case{"a/plate.1002.exr", 1002, true},
+                          {"plate.0007.exr", 7, true},
+                          {"plate.1234567.png", 1234567, true},
+                          {"IMG_1234.jpg", 1234, false},
+                          {"plate_v2_0010.exr", 10, false},
+                          {"plate.exr", 0, false},
+                          {"plate.100.exr", 0, false},
+                          {"plate.12345678.exr", 0, false},
+                          {"IMG_20260101.jpg", 0, false},
+                          {"plate1002.exr", 0, false},
+                          {"1002.exr", 0, false},
+                          {".1002.exr", 0, false},
+                          {"plate.1002", 0, false},
+                          {"plate.1002a.exr", 0, false},
+                          {"shot.1002/plate.exr", 0, false}}) {
+        const auto found = number_in_name(c.name);
+        ASSERT_EQ(found.has_value(), c.number != 0) << c.name;
+        if (!found) continue;
+        EXPECT_EQ(found->number, c.number) << c.name;
+        EXPECT_EQ(found->after_dot, c.after_dot) << c.name;
+    }
+}
+
 TEST(Pattern, NamesOfFrames) {
     const auto at = [](const char* text, int frame) { return FilePattern::parse(text).at(frame).string(); };
     EXPECT_EQ(at("a/plate.####.exr", 12), "a/plate.0012.exr");

@@ -106,6 +106,7 @@ struct Case {
         geometry = std::make_unique<Geometry>(scene, camera.position);
         settings = air->trace_settings(camera);
         settings.pixel /= kPixels;
+        settings.start_at(*field, camera.position);
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
                 CameraRay ray = camera_ray(camera, x + 0.5, y + 0.5);

@@ -37,6 +37,14 @@ FileChannel split_channel(const std::string& text) {
     return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
+void refuse_movie(std::string_view option, const std::filesystem::path& file, std::string_view name) {
+    if (is_movie(file))
+        throw UserError(fmt::format(
+            "{}: '{}' is a movie, and numbers a pixel come from pictures; make a sequence of it first, e.g. "
+            "ffmpeg -i {} {}.%04d.png",
+            option, file.string(), file.filename().string(), name));
+}
+
 DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
     options_.type = a.type.value_or(DepthType::Z);
     options_.range = a.range;
@@ -48,11 +56,7 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
             throw UserError(fmt::format(
                 "--depth: '{}' names neither a file nor a channel; give FILE, FILE:CHANNEL or :CHANNEL", *a.depth));
         if (!inside_input_) {
-            if (is_movie(split.file))
-                throw UserError(fmt::format(
-                    "--depth: '{}' is a movie, which cannot hold depth in metres; make a sequence of it first, e.g. "
-                    "ffmpeg -i {} depth.%04d.png",
-                    split.file.string(), split.file.filename().string()));
+            refuse_movie("--depth", split.file, "depth");
             files_ = FilePattern::parse(split.file);
         }
     } else if (a.distance) {
@@ -109,8 +113,24 @@ PixelWindow seen_from(const PixelWindow& data, const PixelWindow& display) {
     return {data.x0 - display.x0, data.y0 - display.y0, data.width, data.height};
 }
 
+double DepthInput::horizon_row(const PixelWindow& display) const {
+    return ground_->fraction ? ground_->horizon * display.height : ground_->horizon;
+}
+
+std::string DepthInput::unseen_ground(const PixelWindow& display) const {
+    const double row = horizon_row(display);
+    if (row >= display.height)
+        return fmt::format(
+            "ground: the horizon, row {:g}, lies below the {} rows of the picture: all of it is background, at {:g} m",
+            row, display.height, far_);
+    return fmt::format(
+        "ground: {:g} m below the camera, it is nowhere in the picture nearer than the background, at {:g} m; check "
+        "height and horizon, or give a larger --far",
+        ground_->height, far_);
+}
+
 DepthPlane DepthInput::ground_plane(const PixelWindow& data, const PixelWindow& display, const Camera& camera) const {
-    const double horizon = display.y0 + (ground_->fraction ? ground_->horizon * display.height : ground_->horizon);
+    const double horizon = display.y0 + horizon_row(display);
     const double f = camera.f_px * camera.pixel_aspect;
     std::vector<float> metres(data.area());
     for (int y = 0; y < data.height; ++y) {
@@ -126,7 +146,11 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
                              const PixelWindow& data, const PixelWindow& display, const Camera& camera,
                              std::vector<Remark>& remarks) const {
     if (constant_) return {seen_from(data, display), std::vector<float>(data.area(), static_cast<float>(*constant_))};
-    if (ground_) return ground_plane(data, display, camera);
+    if (ground_) {
+        DepthPlane plane = ground_plane(data, display, camera);
+        if (plane.nearest() >= static_cast<float>(far_)) remarks.push_back({"ground_unseen", unseen_ground(display)});
+        return plane;
+    }
     if (inside_input_ && input == nullptr)
         throw UserError(fmt::format("--depth :{}: a movie holds no depth channel; name a file", options_.channel));
     DepthBuffer buffer = inside_input_ ? depth_from_picture(*input, input_file, options_, data, display)

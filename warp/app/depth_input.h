@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 
 #include "warp/app/options.h"
@@ -20,6 +21,9 @@ struct FileChannel {
     std::string channel;
 };
 FileChannel split_channel(const std::string& text);
+
+/// UserError if `file`, given to `option`, is a movie; says how to make a sequence of it, which is called `name`.
+void refuse_movie(std::string_view option, const std::filesystem::path& file, std::string_view name);
 
 /// A window counted from the display window's corner: the camera's view begins there, wherever the file puts it.
 PixelWindow seen_from(const PixelWindow& data, const PixelWindow& display);
@@ -42,7 +46,7 @@ class DepthInput {
 
     /// Axial depth on `data`, limited to far(), as the camera sees it (seen_from). `input`: the frame's picture, where
     /// the map is a channel of it (or null). Remarks, beside those of the map: pixels in metres beyond a far() that
-    /// nobody stated.
+    /// nobody stated; ground that is nowhere seen.
     DepthPlane plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
                      const PixelWindow& display, const Camera& camera, std::vector<Remark>& remarks) const;
 
@@ -51,6 +55,10 @@ class DepthInput {
         double height, horizon;
         bool fraction;  ///< horizon is a part of the display's height, else pixels
     };
+    /// Counted from the display window's top.
+    double horizon_row(const PixelWindow& display) const;
+    /// Why no pixel is nearer than the background.
+    std::string unseen_ground(const PixelWindow& display) const;
     DepthPlane ground_plane(const PixelWindow& data, const PixelWindow& display, const Camera& camera) const;
 
     DepthOptions options_;

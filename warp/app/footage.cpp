@@ -46,6 +46,7 @@ void describe_movie(const std::filesystem::path& file, Footage& footage) {
     if (const auto count = reader.frame_count()) {
         footage.frames.resize(static_cast<std::size_t>(*count));
         std::iota(footage.frames.begin(), footage.frames.end(), 1);
+        footage.count_is_exact = reader.count_is_exact();
     }
     if (reader.interlaced())
         footage.notes.push_back(
@@ -76,7 +77,7 @@ Picture first_header(const FilePattern& files, const std::vector<int>& frames) {
     throw FrameError(*failure);
 }
 
-Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int first_frame) {
+Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int still) {
     Footage footage;
     footage.files = FilePattern::parse(path);
     footage.kind = footage_kind(path);
@@ -90,7 +91,7 @@ Footage find_footage(const std::filesystem::path& path, const std::vector<int>& 
         return footage;
     }
     if (footage.kind == FootageKind::Still) {
-        describe_picture(first_header(footage.files, {wanted.empty() ? first_frame : wanted.front()}), footage);
+        describe_picture(first_header(footage.files, {wanted.empty() ? still : wanted.front()}), footage);
         return footage;
     }
     footage.frames = footage.files.find_frames();

@@ -21,9 +21,10 @@ FootageKind footage_kind(const std::filesystem::path& path);
 /// Footage that exists: its kind, frames and first picture's properties.
 struct Footage {
     FootageKind kind = FootageKind::Still;
-    FilePattern files;        ///< of a still or a sequence
-    std::vector<int> frames;  ///< ascending; empty for a still, and for a movie whose length its container hides
-    PixelWindow display;      ///< of the first readable frame among those wanted
+    FilePattern files;           ///< of a still or a sequence
+    std::vector<int> frames;     ///< ascending; empty for a still, and for a movie whose length its container hides
+    bool count_is_exact = true;  ///< of a movie's frames; else estimated from its length
+    PixelWindow display;         ///< of the first readable frame among those wanted
     double pixel_aspect = 1;
     std::optional<Rational> fps;  ///< as stored
     int source_bits = 8;          ///< of a colour channel: 8 … 16 integer, 16 half, 32 float
@@ -32,9 +33,9 @@ struct Footage {
     std::vector<std::string> notes;  ///< what the user should know (rotation, interlace)
 };
 
-/// Looks at the files. `wanted`: the frames that will be read; empty: all there are. `first_frame`: that a still is, if
-/// none is wanted. FrameError: none found, unreadable (names the frame). UserError: a folder, an empty name.
-Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int first_frame);
+/// Looks at the files. `wanted`: the frames that will be read; empty: all there are. `still`: the frame that a still
+/// is, if none is wanted. FrameError: none found, unreadable (names the frame). UserError: a folder, an empty name.
+Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int still);
 
 /// The header of the first of `frames` (at least one) whose file can be read; if none can, FrameError names the first.
 Picture first_header(const FilePattern& files, const std::vector<int>& frames);

@@ -315,7 +315,9 @@ void add_field(CLI::App& app, FieldOptions& o) {
     std::string text = error.what();
     std::replace(text.begin(), text.end(), '\n', ' ');
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
-        text = text.substr(0, text.find(':')) + ": its value is missing";
+        text = text.substr(0, text.find(':')) + (text.find("At Most") != std::string::npos
+                                                     ? ": is given more than once; give it once"
+                                                     : ": its value is missing");
     throw UserError(fmt::format("{}; see 'eikonal {} --help'", text, at == &app ? "" : at->get_name()));
 }
 

@@ -1,12 +1,15 @@
 #include "warp/app/outputs.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
 
 #include "noise/error.h"
+#include "warp/displace/model.h"
+#include "warp/image/interrupt.h"
 #include "warp/image/movie_writer.h"
 #include "warp/image/picture.h"
 
@@ -44,6 +47,21 @@ void check_format(const std::string& option, const fs::path& path, OutputKind ki
             ".mp4, .mov, .mkv, .avi or .webm",
             option, path.string(), extension));
     }
+}
+
+constexpr const char* kMakeAnew = "--overwrite makes it anew, another name keeps it";
+
+/// Why a whole file of size `found` is not what is asked for; empty if it may be.
+std::string other_size(const std::string& option, const fs::path& file, const PixelWindow& found,
+                       const PixelWindow& wanted) {
+    if (found.width == wanted.width && found.height == wanted.height) return {};
+    return fmt::format("{}: '{}' is already there with {} x {} pixels, not the {} x {} of this shot; {}", option,
+                       file.string(), found.width, found.height, wanted.width, wanted.height, kMakeAnew);
+}
+
+/// By how much a number of frames may be off.
+std::int64_t slack(std::int64_t frames, bool exact) {
+    return exact ? 0 : 1 + frames / 50;
 }
 
 }  // namespace
@@ -94,20 +112,84 @@ void Outputs::check(const std::vector<int>& frames, const std::vector<NamedFiles
     for (const Output& output : outputs_) claim_all(output, true);
 }
 
-bool Outputs::finished(int frame) const {
-    std::error_code ignored;
-    return std::all_of(outputs_.begin(), outputs_.end(), [&](const Output& o) {
-        return o.kind == OutputKind::Report ||
-               (fs::is_regular_file(o.at(frame), ignored) && fs::file_size(o.at(frame), ignored) > 0);
+std::size_t Outputs::keep_finished(std::vector<int>& frames, const PixelWindow& display) const {
+    struct Found {
+        bool finished = true;
+        fs::path damaged;  ///< the first such file
+        std::string refusal;
+    };
+    const auto look = [&](int frame) {
+        Found found;
+        for (const Output& output : outputs_) {
+            if (output.kind == OutputKind::Report) continue;
+            const fs::path file = output.at(frame);
+            std::error_code ignored;
+            const bool there = fs::is_regular_file(file, ignored);
+            found.finished = found.finished && there;
+            if (!there) continue;
+            try {
+                const PixelWindow size = display_window(read_picture_ends(file).parts.front());
+                if (found.refusal.empty()) found.refusal = other_size(output.option, file, size, display);
+            } catch (const FrameError&) {
+                found.finished = false;
+                if (found.damaged.empty()) found.damaged = file;
+            }
+        }
+        return found;
+    };
+    std::vector<Found> found(frames.size());
+    tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+        check_cancelled(interrupted);
+        found[i] = look(frames[i]);
     });
+    for (const Found& each : found)
+        if (!each.refusal.empty()) throw UserError(each.refusal);
+    std::vector<int> missing;
+    std::vector<fs::path> damaged;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (!found[i].finished) missing.push_back(frames[i]);
+        if (!found[i].damaged.empty()) damaged.push_back(found[i].damaged);
+    }
+    const std::size_t kept = frames.size() - missing.size();
+    frames = std::move(missing);
+    if (kept > 0)
+        fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes {} anew\n", kept,
+                   kept == 1 ? " is" : "s are", kept == 1 ? "it" : "them");
+    if (!damaged.empty())
+        fmt::print(stderr, "eikonal: '{}'{} damaged and made anew\n", damaged.front().string(),
+                   damaged.size() == 1 ? " is" : fmt::format(" and {} more are", damaged.size() - 1));
+    return kept;
 }
 
-std::size_t Outputs::keep_finished(std::vector<int>& frames) const {
-    const std::size_t kept = std::erase_if(frames, [&](int frame) { return finished(frame); });
-    if (kept > 0)
-        fmt::print(stderr, "eikonal: {} frame{} already there and kept; --overwrite makes them anew\n", kept,
-                   kept == 1 ? " is" : "s are");
-    return kept;
+bool Outputs::keep_movie(const PixelWindow& display, const AskedFrames& asked) const {
+    const NamedFiles& output = *find("-o");
+    const fs::path& file = output.files.text();
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return false;
+    std::optional<std::int64_t> frames;
+    PixelWindow size;
+    try {
+        const MovieReader reader(file);
+        size = {0, 0, reader.format().width, reader.format().height};
+        frames = count_frames(file);
+        const std::int64_t stated = reader.frame_count().value_or(0);
+        if (frames && *frames + slack(stated, reader.count_is_exact()) < stated)
+            throw FrameError("it is cut off between two frames");
+    } catch (const FrameError&) {
+        fmt::print(stderr, "eikonal: '{}' is damaged and made anew\n", file.string());
+        return false;
+    }
+    if (const std::string refusal = other_size(output.option, file, size, display); !refusal.empty())
+        throw UserError(refusal);
+    const std::string held = frames ? fmt::format("{} frame{}", *frames, *frames == 1 ? "" : "s") : "";
+    const auto wanted = static_cast<std::int64_t>(asked.count);
+    const std::int64_t more = slack(wanted, asked.exact);
+    if (frames && wanted > 0 && (*frames > wanted + more || (*frames + more < wanted && !asked.may_lack_some)))
+        throw UserError(fmt::format("{}: '{}' is already there with {}, not the {} that are asked for; {}",
+                                    output.option, file.string(), held, wanted, kMakeAnew));
+    fmt::print(stderr, "eikonal: '{}' is already there and kept{}; --overwrite makes it anew\n", file.string(),
+               frames ? " (" + held + ")" : "");
+    return true;
 }
 
 const NamedFiles* Outputs::find(const std::string& option) const {

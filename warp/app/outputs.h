@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "warp/image/linear_image.h"
 #include "warp/image/sequence.h"
 
 namespace eikonal {
@@ -24,6 +25,13 @@ struct NamedFiles {
     std::filesystem::path at(int frame) const { return single ? files.text() : files.at(frame); }
 };
 
+/// How many frames a movie is to have.
+struct AskedFrames {
+    std::size_t count = 0;       ///< 0: not known
+    bool exact = true;           ///< else an estimate from the input's length
+    bool may_lack_some = false;  ///< bad ones are skipped
+};
+
 class Outputs {
   public:
     /// UserError: no file name, a format that cannot be written or cannot hold this, a folder that is not there,
@@ -34,10 +42,13 @@ class Outputs {
     /// file.
     void check(const std::vector<int>& frames, const std::vector<NamedFiles>& inputs) const;
 
-    /// Whether all of a frame's files are there (they appear only when whole).
-    bool finished(int frame) const;
-    /// Takes the finished frames from `frames`, tells on stderr that they are kept, and returns how many they are.
-    std::size_t keep_finished(std::vector<int>& frames) const;
+    /// Takes from `frames` those whose files are all there and whole, tells on stderr that they are kept, and returns
+    /// how many they are. Damaged files are told, too: their frames are to be made anew. UserError: a whole picture of
+    /// another size than `display`, which may be precious.
+    std::size_t keep_finished(std::vector<int>& frames, const PixelWindow& display) const;
+    /// Whether the movie under -o is there and whole, which is told on stderr as above. UserError: another size, or
+    /// another number of frames than `asked`.
+    bool keep_movie(const PixelWindow& display, const AskedFrames& asked) const;
     /// The files of an option, or null.
     const NamedFiles* find(const std::string& option) const;
 

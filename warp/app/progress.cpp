@@ -34,17 +34,19 @@ Progress::Progress(ProgressStyle style, std::size_t total, std::string what)
 }
 
 Progress::~Progress() {
+    if (style_ != ProgressStyle::None && done_ > 0 && !ended_) draw(true);  // stopped, or longer or shorter than told
     if (on_screen_) std::fputc('\n', stderr);
 }
 
 void Progress::draw(bool last) {
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
     const bool known = total_ > 0;  // a movie may hide its length
+    ended_ = last;
     const double left =
         done_ > 0 && known ? elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_) : 0;
     const std::size_t made = done_ - failed_;
     const std::string counts =
-        (known ? fmt::format(" {}/{} {}", made, total_, what_) : fmt::format(" {} frames", made)) +
+        (known ? fmt::format(" {}/{} {}", made, total_, what_) : fmt::format(" {} {}", made, what_)) +
         (failed_ > 0 ? fmt::format(", {} failed", failed_) : "");
     const std::string times = last                   ? fmt::format(", {}", time_text(elapsed))
                               : done_ == 0 || !known ? std::string()

@@ -13,7 +13,7 @@ namespace eikonal {
 class Progress {
   public:
     Progress(ProgressStyle style, std::size_t total, std::string what);
-    /// Ends the bar's line.
+    /// Says how many there were, if that has not been said, and ends the bar's line.
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -31,7 +31,7 @@ class Progress {
     std::size_t total_, done_ = 0, failed_ = 0;
     std::string what_;
     Clock::time_point start_, drawn_;
-    bool on_screen_ = false;
+    bool on_screen_ = false, ended_ = false;
     std::mutex lock_;
 };
 

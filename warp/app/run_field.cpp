@@ -246,17 +246,19 @@ int run(const FieldOptions& options) {
     static const std::vector<std::string> kNames{"n", "F.x", "F.y", "F.z"};
     const PixelWindow window{0, 0, slices.width, slices.height};
     std::vector<float> values(kChannels * window.area());
+    if (!options.run.overwrite) outputs.keep_finished(numbers, window);
+    if (numbers.empty()) return 0;
+    std::size_t made = 0;
     Progress progress(options.run.progress, numbers.size(), "slices");
     for (const int slice : numbers) {
         if (interrupted())
             throw FrameError(
-                fmt::format("interrupted after {} of {} slices; the same command goes on", slice, slices.count));
-        if (options.run.overwrite || !outputs.finished(slice)) {
-            slices.fill(slice, values);
-            std::vector<Attribute> attributes = slices.attributes;
-            attributes.emplace_back("eikonal/z", slices.position(slice));
-            write_float_exr(outputs.find("-o")->at(slice), window, window, kNames, values, attributes);
-        }
+                fmt::format("interrupted after {} of {} slices; the same command goes on", made, numbers.size()));
+        slices.fill(slice, values);
+        std::vector<Attribute> attributes = slices.attributes;
+        attributes.emplace_back("eikonal/z", slices.position(slice));
+        write_float_exr(outputs.find("-o")->at(slice), window, window, kNames, values, attributes);
+        ++made;
         progress.step();
     }
     return 0;

@@ -45,7 +45,7 @@ int run(const MapOptions& options) {
               options.run.states_errors());
     outputs.check(frames, shot.companions());
     shot.tell(frames, options.run.verbose);
-    const std::size_t kept = options.run.overwrite ? 0 : outputs.keep_finished(frames);
+    const std::size_t kept = options.run.overwrite ? 0 : outputs.keep_finished(frames, display);
     if (options.run.explain) {
         explain(shot, {display, frames, kept, limit.threads(), shot.frame_bytes(kMapBytes), {}});
         return 0;

@@ -27,11 +27,11 @@ struct PlateItem : FrameItem {
 constexpr double kPixelBytes = 3 * 16 + 8 + 8 + 12;
 constexpr double kChannelBytes = 2 * 4;
 
-/// Frames to warp: the user's list `wanted`, or all there are.
+/// Frames to warp: the user's list `wanted`, or all there are. `still`: the frame that a still is, if none is wanted.
 std::vector<int> choose_frames(const WarpOptions& options, const Footage& footage, const std::vector<int>& wanted,
-                               int first_frame, bool& hole) {
+                               int still, bool& hole) {
     std::vector<int> frames = options.run.frames ? wanted : footage.frames;
-    if (footage.kind == FootageKind::Still) return options.run.frames ? frames : std::vector<int>{first_frame};
+    if (footage.kind == FootageKind::Still) return options.run.frames ? frames : std::vector<int>{still};
     if (footage.kind == FootageKind::Movie) {
         std::sort(frames.begin(), frames.end());
         const auto last = static_cast<int>(footage.frames.size());
@@ -57,6 +57,21 @@ std::vector<int> choose_frames(const WarpOptions& options, const Footage& footag
     fmt::print(stderr, "eikonal: warning: {}\n", what);
     std::erase_if(frames, [&](int f) { return std::find(missing.begin(), missing.end(), f) != missing.end(); });
     return frames;
+}
+
+/// The frame that a still is, if --frames does not say: its name's number where sequences have it, else the scene's
+/// first. `notice`: what to tell of that, and of a number that may be meant.
+int frame_of_still(const WarpOptions& options, int first_frame, std::string& notice) {
+    if (options.run.frames || footage_kind(options.input) != FootageKind::Still) return first_frame;
+    const auto named = number_in_name(options.input);
+    if (!named || named->number == first_frame) return first_frame;
+    const std::string file = options.input.string();
+    notice = named->after_dot
+                 ? fmt::format("'{}' gets the air of frame {}, as its name says; --frames names another", file,
+                               named->number)
+                 : fmt::format("'{}' gets the air of frame {}, as a still; --frames {} if it is that of a sequence",
+                               file, first_frame, named->number);
+    return named->after_dot ? named->number : first_frame;
 }
 
 /// Instants of a shutter that is centred on the frame.
@@ -148,7 +163,13 @@ class WarpRun {
         if (const NamedFiles* stmap = outputs_.find("--stmap")) write_stmap(stmap->at(frame), middle, display);
         if (const NamedFiles* displacement = outputs_.find("--displacement"))
             write_displacement(displacement->at(frame), middle, display);
-        warp_plate(item.plate, maps, {options_.filter, options_.edge, options_.dispersion});
+        if (const std::size_t strange =
+                warp_plate(item.plate, maps, {options_.filter, options_.edge, options_.dispersion}))
+            item.record.remarks.push_back(
+                {"plate_finite",
+                 fmt::format("'{}': {} colour values are NaN or infinite; where the air moves them, NaN "
+                             "counts as 0 and infinity as 65504",
+                             file.string(), strange)});
         if (output_.single) {
             if (picture == nullptr)
                 item.encoded = std::move(std::get<MovieFrame>(item.plate));
@@ -263,10 +284,13 @@ int run(const WarpOptions& options) {
         throw UserError(fmt::format("{}: is for movies, but '{}' is none; leave it out or name a .mov",
                                     options.codec.empty() ? "--quality" : "--codec", options.output.string()));
     const std::vector<int> wanted = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{};
-    const Footage footage = find_footage(options.input, wanted, scene.time.first_frame);
+    std::string notice;
+    const int still = frame_of_still(options, scene.time.first_frame, notice);
+    const Footage footage = find_footage(options.input, wanted, still);
+    if (!notice.empty()) fmt::print(stderr, "eikonal: {}\n", notice);
     for (const std::string& note : footage.notes) fmt::print(stderr, "eikonal: warning: {}\n", note);
     bool hole = false;
-    std::vector<int> frames = choose_frames(options, footage, wanted, scene.time.first_frame, hole);
+    std::vector<int> frames = choose_frames(options, footage, wanted, still, hole);
     Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
               footage.fps ? std::optional(footage.fps->value()) : std::nullopt, options.run.states_errors());
     std::vector<NamedFiles> inputs = shot.companions();
@@ -277,14 +301,11 @@ int run(const WarpOptions& options) {
     std::size_t kept = 0;
     if (!options.run.overwrite) {
         if (to_movie) {
-            std::error_code ignored;
-            if (std::filesystem::exists(options.output, ignored) && !options.run.explain) {
-                fmt::print(stderr, "eikonal: '{}' is already there and kept; --overwrite makes it anew\n",
-                           options.output.string());
-                return hole ? 1 : 0;
-            }
+            const bool exact = footage.kind != FootageKind::Movie || footage.count_is_exact || options.run.frames;
+            const AskedFrames asked{frames.size(), exact, options.run.skip_bad_frames};
+            if (!options.run.explain && outputs.keep_movie(footage.display, asked)) return hole ? 1 : 0;
         } else {
-            kept = outputs.keep_finished(frames);
+            kept = outputs.keep_finished(frames, footage.display);
         }
     }
     if (options.run.explain) {

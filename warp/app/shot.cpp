@@ -23,10 +23,29 @@ double gain_of(const Displacer& displacer, const StrengthOptions& strength, doub
     if (!strength.rms) return strength.gain;
     const double natural = displacer.expected_rms(far);
     if (natural == 0 && *strength.rms > 0)
-        throw UserError(fmt::format(
-            "--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength (cn2)",
-            *strength.rms));
+        throw UserError(
+            fmt::format("--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength "
+                        "(cn2), and its "
+                        "lattice, if it has one, 4 samples or more in x, y and z",
+                        *strength.rms));
     return natural > 0 ? strength.gain * *strength.rms / natural : 0;
+}
+
+/// A line on each lattice that has strength and no wave with a slope: with two samples a period all are at Nyquist.
+std::vector<std::string> flat_lattices(const Scene& scene) {
+    std::vector<std::string> lines;
+    for (std::size_t i = 0; i < scene.media.size(); ++i) {
+        const auto* spec = std::get_if<TurbulenceSpec>(&scene.media[i]);
+        if (spec == nullptr || spec->form != TurbulenceForm::Lattice || !spec->lattice) continue;
+        const double source = spec->spectrum == SpectrumKind::VonKarman ? spec->cn2 : spec->strength;
+        const std::array<int, 4>& n = *spec->lattice;
+        if (source * force_strength(scene.optics) != 0 && std::count(n.begin(), n.begin() + 3, 2) >= 2)
+            lines.push_back(fmt::format(
+                "medium.{}: moves nothing: of two samples a period, as in its lattice [{}], no wave has a slope that "
+                "bends light; give it 4 or more in x, y and z",
+                i, fmt::join(n, ", ")));
+    }
+    return lines;
 }
 
 /// One line on how the model was chosen.
@@ -82,6 +101,7 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
         const FileChannel split = split_channel(*strength.mask);
         if (split.file.empty())
             throw UserError(fmt::format("--mask: '{}' names no file; give FILE or FILE:CHANNEL", *strength.mask));
+        refuse_movie("--mask", split.file, "mask");
         mask_ = FilePattern::parse(split.file);
         mask_channel_ = split.channel;
     }
@@ -94,6 +114,8 @@ double Shot::frame_bytes(double pixel_bytes) const {
 void Shot::tell(const std::vector<int>& frames, bool verbose) {
     warnings_ = displacer_->warnings();
     if (scene_.media.empty()) warnings_.push_back("the scene has no medium: nothing moves");
+    if (gain_ != 0)
+        for (std::string& line : flat_lattices(scene_)) warnings_.push_back(std::move(line));
     if (choice_ && !choice_->within)
         warnings_.push_back(
             fmt::format("--tolerance {:g}: no model stays within it; {} is used, off by up to {:.2g} px in 95 of 100 "
@@ -148,10 +170,10 @@ std::optional<std::string> Shot::missing_companion(const std::vector<int>& frame
         for (const int frame : frames) {
             const std::filesystem::path file = files->at(frame);
             if (!std::filesystem::exists(file, ignored))
-                return fmt::format(
-                    "frame {}: the {} '{}' does not exist; it must have every frame that is warped (--frames names "
-                    "fewer)",
-                    frame, what, file.string());
+                return fmt::format("frame {}: the {} '{}' does not exist; {}", frame, what, file.string(),
+                                   files->is_sequence()
+                                       ? "it must have every frame that is warped (--frames names fewer)"
+                                       : "check the name");
         }
         return {};
     };

@@ -106,13 +106,14 @@ void move_data(Part& part, const Part& source, const DataMover& mover, const Dis
     });
 }
 
-void warp_picture(Picture& picture, const std::vector<DisplacementMap>& maps, const WarpSettings& settings) {
+std::size_t warp_picture(Picture& picture, const std::vector<DisplacementMap>& maps, const WarpSettings& settings) {
+    std::size_t strange = 0;
     for (Part& part : picture.parts) {
         const PixelWindow window = data_window(part);
         const std::vector<std::uint8_t> moved = moved_pixels(maps, window);
         Workspace& space = workspace();
         for (const ChannelGroup& group : part.groups) {
-            load_group(part, group, space.in);
+            strange += load_group(part, group, space.in);
             resample_all(space, maps, settings, group.count == 3);
             store_group(part, group, space.out, moved);
         }
@@ -121,6 +122,7 @@ void warp_picture(Picture& picture, const std::vector<DisplacementMap>& maps, co
         const Part source = part;  // colour of it is not read, only its data channels
         move_data(part, source, mover, maps[maps.size() / 2], settings.edge);
     }
+    return strange;
 }
 
 }  // namespace
@@ -145,16 +147,14 @@ PixelWindow plate_display(const Plate& plate) {
     return display_window(std::get<Picture>(plate).parts.front());
 }
 
-void warp_plate(Plate& plate, const std::vector<DisplacementMap>& maps, const WarpSettings& settings) {
-    if (auto* picture = std::get_if<Picture>(&plate)) {
-        warp_picture(*picture, maps, settings);
-        return;
-    }
+std::size_t warp_plate(Plate& plate, const std::vector<DisplacementMap>& maps, const WarpSettings& settings) {
+    if (auto* picture = std::get_if<Picture>(&plate)) return warp_picture(*picture, maps, settings);
     auto& frame = std::get<MovieFrame>(plate);
     Workspace& space = workspace();
     load_frame(frame, space.in);
     resample_all(space, maps, settings, !frame.format.gray);
     store_frame(frame, space.out, moved_pixels(maps, space.in.data));
+    return 0;
 }
 
 LinearImage main_colour(const Plate& plate) {

@@ -33,8 +33,9 @@ PixelWindow plate_display(const Plate& plate);
 const Part& main_part(const Picture& picture);
 
 /// Moves the plate. `maps` (at least one) are the instants within the shutter; their pictures are averaged, and data
-/// channels follow the middle one. Every map covers plate_window().
-void warp_plate(Plate& plate, const std::vector<DisplacementMap>& maps, const WarpSettings& settings);
+/// channels follow the middle one. Every map covers plate_window(). Returns how many colour values of the plate are not
+/// finite (picture.h: what they count as where something moves).
+std::size_t warp_plate(Plate& plate, const std::vector<DisplacementMap>& maps, const WarpSettings& settings);
 
 /// Main colour of a plate as linear light (movie of a sequence, picture of a movie frame).
 LinearImage main_colour(const Plate& plate);

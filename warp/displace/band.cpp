@@ -87,6 +87,12 @@ void Band::cover(const PixelWindow& pixels) {
     rows = floor_div(pixels.y0 + pixels.height - 1, spacing) - before() + taps - row0;
     weights.resize(static_cast<std::size_t>(spacing));
     for (int p = 0; p < spacing; ++p) weights[static_cast<std::size_t>(p)] = lagrange(static_cast<double>(p) / spacing);
+    pair_weights.clear();
+    for (std::size_t p = 0; spacing % 2 == 0 && p < weights.size(); p += 2) {
+        auto& pair = pair_weights.emplace_back();
+        for (std::size_t tap = 0; tap < kTaps; ++tap)
+            pair[tap] = Node{weights[p][tap], weights[p][tap], weights[p + 1][tap], weights[p + 1][tap]};
+    }
     nodes.assign(static_cast<std::size_t>(rows) * depths.size() * static_cast<std::size_t>(columns), Node{});
 }
 
@@ -177,7 +183,8 @@ EIKONAL_CLONES void mix_line(const Node* lower, const Node* upper, const Mix& m,
     const Node wl{m.x_lower, m.x_lower, m.s_lower, m.s_lower}, wu{m.x_upper, m.x_upper, m.s_upper, m.s_upper};
     for (int i = 0; i < n; ++i) {
         const Node v = wl * lower[i] + wu * upper[i];
-        out[i] = Node{v[0] + v[2], v[1] + v[3], 0, 0};
+        const float x = v[0] + v[2], y = v[1] + v[3];
+        out[i] = Node{x, y, x, y};
     }
 }
 
@@ -190,16 +197,28 @@ EIKONAL_CLONES void add_mixed(const Node* lower, const Node* upper, const Mix& m
     }
 }
 
-EIKONAL_CLONES void expand_line(const Node* line, int first_phase, int spacing, const Weights* weights, int n,
-                                float* uv) {
+/// line: (u, v, u, v) a node. Whole cells of an even spacing take two pixels at a time.
+EIKONAL_CLONES void expand_line(const Node* line, int first_phase, int spacing, const Weights* weights,
+                                const std::array<Node, kTaps>* pairs, int n, float* uv) {
     int phase = first_phase;
     const Node* p = line;
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < n;) {
+        if (phase == 0 && pairs && i + spacing <= n) {
+            for (int k = 0; k < spacing; k += 2) {
+                const auto& w = pairs[k / 2];
+                const Node v = w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3] + w[4] * p[4] + w[5] * p[5];
+                for (int c = 0; c < 4; ++c) uv[2 * (i + k) + c] += v[c];
+            }
+            i += spacing;
+            ++p;
+            continue;
+        }
         const Weights& w = weights[phase];
         const Node v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] +
                        splat(w[4]) * p[4] + splat(w[5]) * p[5];
         uv[2 * i] += v[0];
         uv[2 * i + 1] += v[1];
+        ++i;
         if (++phase == spacing) {
             phase = 0;
             ++p;
@@ -221,7 +240,8 @@ void BandRow::add_constant_depth(int x0, int n, double z, float* uv) const {
     }
     std::vector<Node> line(columns);
     mix_line(lower, upper, m, band.columns, line.data());
-    expand_line(line.data() + first, x0 - base * band.spacing, band.spacing, band.weights.data(), n, uv);
+    expand_line(line.data() + first, x0 - base * band.spacing, band.spacing, band.weights.data(),
+                band.pair_weights.empty() ? nullptr : band.pair_weights.data(), n, uv);
 }
 
 }  // namespace eikonal

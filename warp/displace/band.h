@@ -58,7 +58,8 @@ struct Band {
     DepthInterpolation interpolation = DepthInterpolation::Linear;
     std::vector<double> depths;  ///< axial depth of each layer [m], ascending, > 0
     std::vector<Node> nodes;
-    std::vector<std::array<float, 6>> weights;  ///< of the interpolant, for each phase 0 … spacing - 1
+    std::vector<std::array<float, 6>> weights;      ///< of the interpolant, for each phase 0 … spacing - 1
+    std::vector<std::array<Node, 6>> pair_weights;  ///< the same of two phases at a time; none if the spacing is odd
 
     /// Sets the grid that interpolation needs for these (absolute) pixels, and zeroes the nodes. depths must be set.
     void cover(const PixelWindow& pixels);

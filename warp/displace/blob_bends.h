@@ -18,8 +18,8 @@
 
 #include <vector>
 
-#include "noise/blob_kernel.h"
-#include "warp/displace/band.h"
+#include "noise/blobs.h"
+#include "warp/displace/blob_band.h"
 #include "warp/displace/model.h"
 #include "warp/scene/camera.h"
 
@@ -32,16 +32,6 @@ inline constexpr double kNodeSpacing = 0.35, kLayerSpacing = 0.5;
 /// Bound of the error between layers, relative likewise, where kMostBlobLayers suffice.
 inline constexpr double kBlobLayerError = 2e-3;
 inline constexpr int kMostBlobLayers = 64;
-
-/// A blob as one frame's camera sees it.
-struct SeenBlob {
-    double right, up, forward;  ///< of its centre from the camera (orthographic: from the camera's plane) [m]
-    double sigma;               ///< [m]
-    double amplitude;           ///< -2 n_j strength f_px
-    double reach;               ///< radius of what is not left out [m]
-    int spacing;                ///< of nodes [px]
-    PixelWindow disc;           ///< pixels that it reaches, cut to ±2^29
-};
 
 /// The blobs of one instant. Immutable, thread-safe.
 class BlobBends {
@@ -60,8 +50,6 @@ class BlobBends {
     std::vector<double> layers(double nearest, double farthest) const;
 
   private:
-    bool meets(const SeenBlob& blob, const PixelWindow& tile) const;
-
     Camera camera_;
     std::vector<SeenBlob> seen_;  ///< those that move anything
 };
@@ -69,5 +57,10 @@ class BlobBends {
 /// Upper bound of the displacement by a blob n_j, σ at axial depth `forward`, of objects up to `farthest` [px]: the
 /// whole pass' 2√π n_j (b/σ) e^{-b²/σ²} at its largest, b = σ/√2.
 double largest_blob_shift(const Blob& blob, double strength, const Camera& camera, double forward, double farthest);
+
+/// Whether blobs that live there can move anything in the window, at any time, by more than negligible [px] all
+/// together; false is certain.
+bool may_be_seen(const std::vector<BlobHome>& homes, double strength, const Camera& camera, const PixelWindow& window,
+                 double farthest, double negligible);
 
 }  // namespace eikonal

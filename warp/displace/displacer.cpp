@@ -184,8 +184,11 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
 
 StatedError Displacer::Instant::stated_error(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting,
                                              const float* uv) const {
+    const bool blobs = std::any_of(state_->own.begin(), state_->own.end(),
+                                   [](const LayerInstant& layer) { return std::holds_alternative<BlobBends>(layer); });
     const auto samples = static_cast<int>(std::min<std::size_t>(window.area() / kPixelsPerSample, kErrorSamples));
-    return statistics_of(sampled_errors(window, depth, meeting, uv, std::max(samples, kFewestErrorSamples)));
+    return statistics_of(
+        sampled_errors(window, depth, meeting, uv, std::max(blobs ? samples / 2 : samples, kFewestErrorSamples)));
 }
 
 std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window, const DepthSource& depth,
@@ -203,6 +206,11 @@ std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window
         std::array<float, 2> d{};
         if (plane) {
             MeetTile(**plane, pixel, meeting, s.reach(bands, {}, pixel), mirages).row(row, p.y, d.data());
+            const bool perspective = s.camera.projection == Projection::Perspective;
+            if (!row.mirage_moves(p.x)) {
+                const Shift smooth = meet_surface(row, **plane, perspective, p.x, p.y, {d[0], d[1]});
+                d = {smooth.x, smooth.y};
+            }
         } else {
             const Shift shift = row.at(p.x, std::min(p.depth, row.end(p.x)));
             d = {shift.x, shift.y};

@@ -18,6 +18,9 @@ namespace {
 /// Spline error of `table` and `tables`, relative to the rms, and the nearest object, in parts of `far`, that padding
 /// is for.
 constexpr double kTableSplineError = 1e-2, kNearestPadded = 0.05;
+/// Spline error of the rays that judge tables, relative to the rms, in parts of √v, v the focusing variance: about half
+/// of the second order that they are there to find.
+constexpr double kJudgedSplineError = 0.125;
 /// A lattice axis is the view's if they differ by less (1 - cosine).
 constexpr double kAligned = 1e-9;
 /// table and tables take rays for parallel to a lattice axis: refused beyond 30 degrees from it.
@@ -92,7 +95,7 @@ double MediaLayers::corner_gain(Model model) const {
         case Model::Spectral:
             return 1;  // parallel rays
         case Model::Screens:
-            return L * std::sqrt(L);
+            return L * L * std::sqrt(L);
         default:
             return L * L * L;
     }
@@ -126,21 +129,24 @@ void MediaLayers::add(std::size_t i, const TurbulenceSpec& spec) {
 
 void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
     BlobCloud cloud(spec, law_, fmt::format("medium.{}", i));
+    const std::vector<BlobHome> homes = cloud.homes();
     double strongest = 0;
-    for (const BlobSpec& blob : spec.blobs)
-        strongest = std::max(strongest, std::abs(law_.above_ambient(blob.temperature)));
-    for (const BlobSourceSpec& source : spec.sources)
-        if (source.rate > 0) strongest = std::max(strongest, std::abs(law_.above_ambient(source.temperature)));
+    for (const BlobHome& home : homes) strongest = std::max(strongest, std::abs(home.largest.n));
     // wherever they are: as if every blob were at the camera
     const double bound = largest_blob_shift({{}, 0, strongest}, strength_, reference_, 0, settings_.far) * cloud.most();
-    if (bound == 0 || (!camera_moves_ && bound <= settings_.negligible)) {
-        notes_.push_back(fmt::format("medium.{}: left out, {}", i,
-                                     cloud.most() == 0 ? "it has no blobs"
-                                     : strongest == 0
-                                         ? "no blob differs from the ambient temperature"
-                                         : fmt::format("its blobs move no pixel by more than {:.2g} px", bound)));
-        return;
-    }
+    const auto leave_out = [&](const std::string& why) {
+        notes_.push_back(fmt::format("medium.{}: left out, {}", i, why));
+    };
+    if (cloud.most() == 0) return leave_out("it has no blobs");
+    if (strongest == 0) return leave_out("no blob differs from the ambient temperature");
+    if (bound == 0 || (!camera_moves_ && bound <= settings_.negligible))
+        return leave_out(fmt::format("its blobs move no pixel by more than {:.2g} px", bound));
+    // with room for an overscan as wide as the picture on every side
+    const int w = settings_.width, h = settings_.height;
+    if (!camera_moves_ &&
+        !may_be_seen(homes, strength_, reference_, {-w, -h, 3 * w, 3 * h}, settings_.far, settings_.negligible))
+        return leave_out(
+            fmt::format("none of its blobs comes between the picture and what is up to {:g} m away", settings_.far));
     notes_.push_back(fmt::format(
         "medium.{}: model {}, up to {} blobs at a time", i,
         second_order() ? "second-order (through all media together)" : "first-order (closed form)", cloud.most()));
@@ -298,9 +304,8 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
     MediumLayer layer{i, model, LatticeField(spec, geometry), cell, 0};
     const auto& field = std::get<LatticeField>(layer.field);
     const double allowed = second_order() ? kSecondOrderSplineError : kFirstOrderSplineError;
-    if (stepped || settings_.sample_errors) layer.ray_padding = spline_padding(field, allowed);
     if (stepped) {
-        layer.padding = layer.ray_padding;
+        layer.padding = layer.ray_padding = spline_padding(field, allowed);
         if (const double error = snapshot_slope_error(field, layer.padding); error > allowed)
             notes_.push_back(fmt::format(
                 "medium.{}: too large a lattice for a finer spline, whose force is off by {:.2g} of its rms", i,
@@ -309,6 +314,8 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
         const std::array paths{kNearestPadded * settings_.far, settings_.far};
         layer.padding =
             path_padding(field, rays, paths, model == Model::Spectral ? kPathTableError : kTableSplineError);
+        const double order = kJudgedSplineError * std::sqrt(focusing_variance(layer, settings_.far));
+        if (settings_.sample_errors) layer.ray_padding = spline_padding(field, std::max(allowed, order));
     }
     if (model == Model::Table) {
         const auto x1 = field.displacement_variance(rays.axis, settings_.far, rays.aperture);

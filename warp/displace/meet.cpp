@@ -356,4 +356,24 @@ void MeetTile::row(BandRows& bands, int y, float* uv) const {
     }
 }
 
+Shift meet_surface(BandRows& bands, const DepthPlane& depth, bool perspective, int x, int y, Shift met) {
+    constexpr int kMostSteps = 32;
+    constexpr float kSettled = 1e-5F;  // [px]
+    const auto value = [&](int i, int j) { return perspective ? 1 / depth.at(i, j) : depth.at(i, j); };
+    Shift d = met;
+    for (int step = 0; step < kMostSteps && motion(d, met) <= 1; ++step) {
+        const int i = x + whole(d.x), j = y + whole(d.y);
+        const auto [low, high] =
+            std::minmax({depth.at(i, j), depth.at(i + 1, j), depth.at(i, j + 1), depth.at(i + 1, j + 1)});
+        if (low < kEdgeRatio * high) return met;
+        const float fx = d.x - std::floor(d.x), fy = d.y - std::floor(d.y);
+        const float q = (1 - fy) * ((1 - fx) * value(i, j) + fx * value(i + 1, j)) +
+                        fy * ((1 - fx) * value(i, j + 1) + fx * value(i + 1, j + 1));
+        const Shift next = bands.at(x, perspective ? 1 / q : q);
+        if (motion(next, d) < kSettled) return next;
+        d = next;
+    }
+    return met;
+}
+
 }  // namespace eikonal

@@ -124,4 +124,9 @@ class MeetTile {
     MirageGround ground_;
 };
 
+/// Where a ray that has met the facet under pixel + met meets the surface through the pixels' centres: inverse depth
+/// (orthographic: depth) linear between them, exact for planes, as no facet is. For pixels whose rays no mirage moves;
+/// `met` itself where an edge is about, or the two lie more than a pixel apart.
+Shift meet_surface(BandRows& bands, const DepthPlane& depth, bool perspective, int x, int y, Shift met);
+
 }  // namespace eikonal

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 
 namespace eikonal {
 namespace {
@@ -31,6 +33,34 @@ void stratify(std::vector<SamplePixel>& pixels) {
     }
 }
 
+/// How near an edge counts for a pixel.
+int edge_reach(const SamplePixel& p) {
+    const float most = std::max(std::abs(p.map.x), std::abs(p.map.y));
+    return std::clamp(static_cast<int>(std::ceil(std::min<float>(most, kFarthestEdge))), kEdgeReach, kFarthestEdge);
+}
+
+/// Leaves out the pixels beside an edge; all stay if fewer than `least` would.
+void keep_smooth(std::vector<SamplePixel>& pixels, const DepthPlane& depth, std::size_t least) {
+    int reach = 0;
+    for (const SamplePixel& p : pixels) reach = std::max(reach, edge_reach(p));
+    constexpr int kBlock = DepthPlane::kBlock;
+    const PixelWindow& window = depth.window();
+    const std::vector<DepthPlane::Range> blocks = depth.around(window, reach);
+    const int columns = (window.width + kBlock - 1) / kBlock;
+    const auto beside_edge = [&](const SamplePixel& p) {
+        const int block = (p.y - window.y0) / kBlock * columns + (p.x - window.x0) / kBlock;
+        if (!std::isfinite(blocks[static_cast<std::size_t>(block)].front)) return false;
+        const int r = edge_reach(p);
+        for (int y = p.y - r; y <= p.y + r; ++y)
+            for (int x = p.x - r; x <= p.x + r; ++x)
+                if (std::isfinite(depth.front(x, y))) return true;
+        return false;
+    };
+    std::vector<SamplePixel> smooth;
+    std::copy_if(pixels.begin(), pixels.end(), std::back_inserter(smooth), std::not_fn(beside_edge));
+    if (smooth.size() >= least) pixels = std::move(smooth);
+}
+
 }  // namespace
 
 std::vector<SamplePixel> choose_samples(const PixelWindow& window, const DepthSource& depth, const float* uv,
@@ -45,10 +75,12 @@ std::vector<SamplePixel> choose_samples(const PixelWindow& window, const DepthSo
         const int px = window.x0 + x, py = window.y0 + y;
         candidates.push_back({px, py, plane ? double{(*plane)->at(px, py)} : std::get<double>(depth), {d[0], d[1]}});
     }
+    const auto wanted = static_cast<std::size_t>(count);
+    if (plane) keep_smooth(candidates, **plane, wanted);
     stratify(candidates);
     std::vector<SamplePixel> samples;
-    for (int i = 0; i < count; ++i)
-        samples.push_back(candidates[static_cast<std::size_t>((2 * i + 1) * kErrorCandidates / (2 * count))]);
+    for (std::size_t i = 0; i < wanted; ++i)
+        samples.push_back(candidates[(2 * i + 1) * candidates.size() / (2 * wanted)]);
     return samples;
 }
 

@@ -6,6 +6,7 @@
 #include "noise/dispatch.h"
 #include "noise/error.h"
 #include "noise/lattice_snapshot.h"
+#include "noise/screen_force.h"
 
 namespace eikonal {
 namespace {
@@ -97,6 +98,17 @@ EIKONAL_CLONES void slant_factors(float sx, float step, float sy, float f, int n
     }
 }
 
+/// u += s (s·u)/(L + 1) at slopes s = (sx + i step, sy): M of noise/screen_force.h. uv: along the screen's axes, y up.
+EIKONAL_CLONES void slant_bends(float sx, float step, float sy, int n, float* uv) {
+    const float across = 1 + sy * sy;
+    for (int i = 0; i < n; ++i) {
+        const float s = sx + static_cast<float>(i) * step;
+        const float along = (s * uv[2 * i] + sy * uv[2 * i + 1]) / (std::sqrt(across + s * s) + 1);
+        uv[2 * i] += s * along;
+        uv[2 * i + 1] += sy * along;
+    }
+}
+
 /// nodes[i] += factor[i] (length, slope) × (u, up·v): up is -pixel aspect.
 EIKONAL_CLONES void add_bends(const float* uv, const float* factor, float length, float slope, float up, int n,
                               Node* nodes) {
@@ -129,8 +141,10 @@ class AlignedRows {
         const double py = (band_.row0 + row) * band_.spacing + 0.5;
         if (band_.perspective) {
             const dvec2 s = camera_.slope(band_.column0 * band_.spacing + 0.5, py);
-            slant_factors(static_cast<float>(s.x), static_cast<float>(band_.spacing / camera_.f_px),
-                          static_cast<float>(s.y), static_cast<float>(camera_.f_px), band_.columns, factor_.data());
+            slope_x_ = static_cast<float>(s.x);
+            slope_y_ = static_cast<float>(s.y);
+            slant_factors(slope_x_, slope_step(), slope_y_, static_cast<float>(camera_.f_px), band_.columns,
+                          factor_.data());
         }
         // With a single layer the levers are the samples' weights, and the screens add up before they become nodes.
         const bool single = band_.depths.size() == 1;
@@ -140,13 +154,16 @@ class AlignedRows {
             if (!single) std::fill(uv_.begin(), uv_.end(), 0.0f);
             sample(a, py, lever);
             if (single) continue;
+            slant();
             for (std::size_t k = 0; k < band_.depths.size(); ++k) {
                 const SlabLever at = slab_lever(a.place.near, a.place.far, band_.depths[k]);
                 if (at.length > 0) store(row, k, at);
             }
         }
         // Beyond its only layer the displacement stays as it is: X ∝ z in perspective.
-        if (single) store(row, 0, {1, band_.perspective ? 1 / band_.depths[0] : 0.0});
+        if (!single) return;
+        slant();
+        store(row, 0, {1, band_.perspective ? 1 / band_.depths[0] : 0.0});
     }
 
   private:
@@ -165,6 +182,10 @@ class AlignedRows {
         apply_falloff(model_, line, a.place, camera_, values_, bend);
         for (std::size_t i = 0; i < uv_.size(); ++i) uv_[i] += bend[i];
     }
+    float slope_step() const { return static_cast<float>(band_.spacing / camera_.f_px); }
+    void slant() {
+        if (band_.perspective) slant_bends(slope_x_, slope_step(), slope_y_, band_.columns, uv_.data());
+    }
     void store(int row, std::size_t layer, const SlabLever& lever) {
         add_bends(uv_.data(), factor_.data(), static_cast<float>(lever.length), static_cast<float>(lever.slope),
                   static_cast<float>(-camera_.pixel_aspect), band_.columns, band_.row(row, layer));
@@ -175,6 +196,7 @@ class AlignedRows {
     const Camera& camera_;
     std::vector<Active>& active_;
     std::vector<float> uv_, values_, factor_;
+    float slope_x_ = 0, slope_y_ = 0;  ///< of the row's first node
 };
 
 /// A row of nodes of any camera, ray by ray.
@@ -202,6 +224,11 @@ void fill_turned_row(const ScreensInstant& model, Band& band, const Camera& came
                 const dvec3 across = g.gradient - glm::dot(g.gradient, reference.forward) * reference.forward;
                 bend = g.n * bend + double{s.value} * across;
             }
+            const dvec2 slope(glm::dot(ray.direction, reference.right) / rate,
+                              glm::dot(ray.direction, reference.up) / rate);
+            const dvec2 slanted =
+                slanted_bend(slope, ray.length / rate, {glm::dot(bend, reference.right), glm::dot(bend, reference.up)});
+            bend = slanted.x * reference.right + slanted.y * reference.up;
             const double weight = ray.length * std::sqrt((far - near) * ray.length / a.screen->thickness());
             const dvec2 kick = image_shift(camera, ray, (model.strength * weight) * bend);
             for (std::size_t k = 0; k < band.depths.size(); ++k) {

@@ -1,9 +1,10 @@
 /// Model `screens`: thin screens across a perspective or orthographic view (PHYSICS 6, *added*):
 ///
-///     X(z) = f_px Σ_m lever_m(z) √L³ ∇⊥ψ_m,      lever_m(z) = z - w_m behind slab m       (noise/screen_layout.h)
+///     X(z) = f_px Σ_m lever_m(z) √L³ M ∇⊥ψ_m,      lever_m(z) = z - w_m behind slab m       (noise/screen_layout.h)
 ///
 /// so that d = X(D)/D is f_px Σ (1 - w_m/D) ∇⊥ψ_m on the axis. A slanted ray has L times the lever, and crosses L times
-/// the air, whose bend is √L times as large.
+/// the air, whose bend is √L times as large; and what turns it in its plane of slant shows L times as large again: M
+/// (noise/screen_force.h).
 ///
 /// The screens are planes fixed in the world, perpendicular to the axis of the shot's reference camera and placed from
 /// its position, so that displacement is consistent when the camera moves: each ray is cut with the planes where it

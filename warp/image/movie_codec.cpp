@@ -112,11 +112,12 @@ std::vector<const KnownEncoder*> candidates(const EncoderRequest& request, const
     for (const AVCodecID codec : {AV_CODEC_ID_H264, AV_CODEC_ID_VP9, AV_CODEC_ID_THEORA, AV_CODEC_ID_DNXHD,
                                   AV_CODEC_ID_MPEG4, AV_CODEC_ID_MPEG2VIDEO, AV_CODEC_ID_MJPEG})
         order.push_back(codec);
+    const bool ogg = std::string_view(request.container->name).starts_with("og");  // names no codecs, and refuses most
     std::vector<const KnownEncoder*> result;
     for (const AVCodecID codec : order) {
         const KnownEncoder* known = find_known(codec);
         if (!known || std::find(result.begin(), result.end(), known) != result.end()) continue;
-        const bool kept = codec == request.source_codec &&
+        const bool kept = codec == request.source_codec && !ogg &&
                           avformat_query_codec(request.container, codec, FF_COMPLIANCE_NORMAL) == AVERROR_PATCHWELCOME;
         if (accepts(request.container, codec) || kept) result.push_back(known);
     }
@@ -203,6 +204,35 @@ void set_quality(AVCodecContext& context, AVDictionary** options, const KnownEnc
     }
 }
 
+/// Of the encoder: the request's, but for codecs that count frames, or have too coarse a clock for it.
+AVRational time_base_for(AVCodecID codec, const EncoderRequest& request) {
+    constexpr int kMpeg4LargestTick = 65535;
+    const bool coarse = codec == AV_CODEC_ID_MPEG4 && request.time_base.den > kMpeg4LargestTick;
+    const bool counts = codec == AV_CODEC_ID_MPEG2VIDEO || codec == AV_CODEC_ID_THEORA;
+    return counts || coarse ? av_inv_q(request.frame_rate) : request.time_base;
+}
+
+/// Has the frames coded as two fields, where the codec can; the container is told in any case.
+void set_fields(AVCodecContext& context, const EncoderRequest& request) {
+    if (!interlaced(request.field_order)) return;
+    context.field_order = request.field_order;
+    switch (context.codec_id) {
+        case AV_CODEC_ID_H264:
+            if (context.height % 4 == 0) context.flags |= AV_CODEC_FLAG_INTERLACED_DCT;  // x264 takes no other
+            break;
+        case AV_CODEC_ID_MPEG2VIDEO:
+        case AV_CODEC_ID_MPEG4:
+            context.flags |= AV_CODEC_FLAG_INTERLACED_DCT | AV_CODEC_FLAG_INTERLACED_ME;
+            break;
+        case AV_CODEC_ID_PRORES:
+        case AV_CODEC_ID_DNXHD:
+            context.flags |= AV_CODEC_FLAG_INTERLACED_DCT;
+            break;
+        default:
+            break;
+    }
+}
+
 void describe_loss(const Encoder& encoder, const EncoderRequest& request, const KnownEncoder& known,
                    const MovieSettings& settings, const std::filesystem::path& path) {
     if (!settings.warn) return;
@@ -224,6 +254,13 @@ void describe_loss(const Encoder& encoder, const EncoderRequest& request, const 
 }
 
 }  // namespace
+
+bool interlaced(AVFieldOrder order) {
+    return order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE;
+}
+bool top_field_first(AVFieldOrder order) {
+    return order == AV_FIELD_TT || order == AV_FIELD_TB;
+}
 
 const AVOutputFormat* find_container(const std::filesystem::path& path) {
     const AVOutputFormat* container = av_guess_format(nullptr, path.filename().c_str(), nullptr);
@@ -258,7 +295,7 @@ Encoder open_encoder(const EncoderRequest& request, const MovieSettings& setting
         context.width = request.format.width;
         context.height = request.format.height;
         context.pix_fmt = pixel_format;
-        context.time_base = request.time_base;
+        context.time_base = time_base_for(codec->id, request);
         context.framerate = request.frame_rate;
         context.sample_aspect_ratio = request.pixel_aspect;
         context.color_range = static_cast<AVColorRange>(encoder.stored.range);
@@ -270,6 +307,7 @@ Encoder open_encoder(const EncoderRequest& request, const MovieSettings& setting
         context.flags |= AV_CODEC_FLAG_BITEXACT;
         context.bits_per_raw_sample = encoder.stored.depth;
         if (request.container->flags & AVFMT_GLOBALHEADER) context.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+        set_fields(context, request);
         AVDictionary* options = nullptr;
         av_dict_parse_string(&options, known->options, "=", ",", 0);
         set_quality(context, &options, *known, request, settings);

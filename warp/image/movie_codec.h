@@ -18,7 +18,12 @@ struct EncoderRequest {
     AVRational time_base{1, 25};
     AVRational frame_rate{25, 1};
     AVRational pixel_aspect{1, 1};
+    AVFieldOrder field_order = AV_FIELD_UNKNOWN;  ///< of an interlaced source
 };
+
+/// Whether a field order means two instants a frame, and that the upper row's comes first (ffmpeg reads TB and BT so).
+bool interlaced(AVFieldOrder order);
+bool top_field_first(AVFieldOrder order);
 
 struct Encoder {
     Codec context;

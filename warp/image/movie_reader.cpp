@@ -264,6 +264,29 @@ struct MovieReader::State {
     }
 };
 
+std::optional<std::int64_t> count_frames(const std::filesystem::path& path) {
+    const libav::Input input = libav::open_input(path);
+    const AVStream* video = libav::video_stream(input.get());
+    if (video == nullptr) throw FrameError(fmt::format("{}: has no video stream", path.string()));
+    for (unsigned i = 0; i < input->nb_streams; ++i)
+        if (input->streams[i] != video) input->streams[i]->discard = AVDISCARD_ALL;
+    const libav::Packet packet = libav::make_packet();
+    std::int64_t frames = 0;
+    int code = 0;
+    while ((code = av_read_frame(input.get(), packet.get())) == 0) {
+        const bool whole = (packet->flags & AV_PKT_FLAG_CORRUPT) == 0;
+        const bool shown = packet->stream_index == video->index && (packet->flags & AV_PKT_FLAG_DISCARD) == 0;
+        av_packet_unref(packet.get());
+        if (!whole) code = AVERROR_INVALIDDATA;
+        if (!whole) break;
+        if (shown) ++frames;
+    }
+    if (code != AVERROR_EOF)
+        throw FrameError(fmt::format("{}: is cut off after frame {}: {}", path.string(), frames, libav::reason(code)));
+    if (video->codecpar->codec_id == AV_CODEC_ID_THEORA) return std::nullopt;
+    return frames;
+}
+
 MovieReader::MovieReader(std::filesystem::path path) : state_(std::make_unique<State>(std::move(path))) {}
 MovieReader::MovieReader(MovieReader&&) noexcept = default;
 MovieReader& MovieReader::operator=(MovieReader&&) noexcept = default;

@@ -64,4 +64,9 @@ class MovieReader {
     std::unique_ptr<State> state_;
 };
 
+/// Frames that a movie's file really holds: its packets, which are read and not decoded. FrameError: unreadable,
+/// without pictures, cut off within a frame. Nothing for Theora, whose frames that repeat the one before leave no
+/// packet.
+std::optional<std::int64_t> count_frames(const std::filesystem::path& path);
+
 }  // namespace eikonal

@@ -19,7 +19,8 @@ namespace eikonal {
 
 namespace {
 
-constexpr int kMpeg4LargestTick = 65535;
+/// Of a source whose time stamps are kept [1/s]; encoders and containers have no use for finer ones.
+constexpr int kFinestClock = 6553500;
 
 AVRational to_libav(Rational value) {
     AVRational result{};
@@ -30,7 +31,7 @@ AVRational to_libav(Rational value) {
 /// Containers and codecs that count frames instead of keeping time stamps.
 bool counts_frames(const AVOutputFormat* container, AVRational time_base) {
     const std::string_view name = container->name;
-    return name == "avi" || name == "mxf" || name == "mpeg" || time_base.den > kMpeg4LargestTick * 100;
+    return name == "avi" || name == "mxf" || name == "mpeg" || time_base.den > kFinestClock;
 }
 
 void advance_time_code(AVDictionary** metadata, AVRational rate, int frames) {
@@ -97,6 +98,7 @@ struct MovieWriter::State {
         request.source_bit_rate = video.codecpar->bit_rate;
         request.pixel_aspect =
             video.sample_aspect_ratio.num > 0 ? video.sample_aspect_ratio : video.codecpar->sample_aspect_ratio;
+        request.field_order = video.codecpar->field_order;
         frame_base = to_libav(source.time_base());
         open(request, to_libav(source.fps()));
         copier->describe_file(*output);
@@ -153,6 +155,8 @@ struct MovieWriter::State {
         if (quicktime && encoder.context->codec_id == AV_CODEC_ID_HEVC)
             stream->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');  // the tag that all players know
 
+        picture->interlaced_frame = libav::interlaced(request.field_order) ? 1 : 0;
+        picture->top_field_first = libav::top_field_first(request.field_order) ? 1 : 0;
         picture->format = encoder.context->pix_fmt;
         allocate(*picture, encoder.stored);
         if (!encoder.exact) {

@@ -1,6 +1,7 @@
 /// Writes movies that keep what their source had: frame count and time stamps, audio, subtitles, data and chapters
-/// (copied, not coded again), colour tags, pixel aspect, rotation, metadata, bit depth and chroma format. Audio that
-/// the container cannot hold becomes what it can (movie_audio.h); other such streams are dropped, with a warning.
+/// (copied, not coded again), colour tags, pixel aspect, rotation, field order, metadata, bit depth and chroma format.
+/// Audio that the container cannot hold becomes what it can (movie_audio.h); other such streams are dropped, with a
+/// warning.
 ///
 /// Codec: the source's own where libav can encode it and the container holds it (h264, hevc, vp8, vp9, av1, mpeg2video,
 /// mpeg4, theora, mjpeg, prores, dnxhd and the lossless ones), else h264, vp9 (.webm), theora (.ogv) or, in .avi, which

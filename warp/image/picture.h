@@ -4,7 +4,7 @@
 /// Conventions
 ///   - Row 0 on top, pixels as stored: interleaved, each channel in its own type (half RGB beside float Z and uint32
 ///   ids
-///     stay what they are). Orientation metadata (Exif) is kept and pixels are not turned.
+///     stay what they are). Photographs that Exif says are to be turned are turned as they are read (orientation.h).
 ///   - Colour means light: warped in linear light, premultiplied by its layer's alpha, filtered. Data means numbers
 ///     (depth, ids, normals, vectors, mattes): moved, never filtered. warp/image/channels.h has the rule.
 ///   - Integer pictures are sRGB unless their metadata say otherwise; float ones are linear. Alpha is associated
@@ -77,6 +77,10 @@ Picture read_picture(const std::filesystem::path& path);
 /// Windows, channels and metadata only: parts have no pixels. FrameError, also for an empty or unreadable file.
 Picture read_picture_header(const std::filesystem::path& path);
 
+/// As read_picture_header, and looks whether the pixels are whole, without reading most of them: at the end mark of PNG
+/// and JPEG, else at the first and the last row or tile of every part, one of which a truncated file lacks. FrameError.
+Picture read_picture_ends(const std::filesystem::path& path);
+
 /// Whether the extension is one of an image format that can be written.
 bool can_write_picture(const std::filesystem::path& path);
 
@@ -84,9 +88,10 @@ bool can_write_picture(const std::filesystem::path& path);
 /// extension and must hold the picture (see picture_for_format). FrameError; nothing is left behind on failure.
 void write_picture(const std::filesystem::path& path, const Picture& picture);
 
-/// Colour of a group in linear light. The second form reuses the memory of `into`.
+/// Colour of a group in linear light. The second form reuses the memory of `into`, and returns how many values (of
+/// colour and alpha) are not finite as stored.
 LinearImage load_group(const Part& part, const ChannelGroup& group);
-void load_group(const Part& part, const ChannelGroup& group, LinearImage& into);
+std::size_t load_group(const Part& part, const ChannelGroup& group, LinearImage& into);
 
 /// Encodes a group back where moved[i] != 0, one entry a pixel of the data window, row by row; all other pixels keep
 /// their bytes. `image` must have the part's data window. Colour below zero alpha of unassociated formats becomes 0.

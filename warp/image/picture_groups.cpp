@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -77,7 +78,8 @@ bool decode_codes(const Lane& lane, const TransferCurve* curve, const std::byte*
     return false;
 }
 
-void load_row(const Layout& layout, const std::byte* row, float* out) {
+/// Returns how many values are not finite as stored.
+std::size_t load_row(const Layout& layout, const std::byte* row, float* out) {
     const std::size_t n = layout.width;
     if (layout.packed == TypeDesc::HALF)
         return decode_half_finite(reinterpret_cast<const std::uint16_t*>(row), out, 4 * n);
@@ -105,10 +107,11 @@ void load_row(const Layout& layout, const std::byte* row, float* out) {
             values[4 * i] = curve.to_linear(values[4 * i] / scale) * scale;
         }
     }
-    make_finite(out, 4 * n);
+    const std::size_t strange = make_finite(out, 4 * n);
     if (layout.has_alpha && !layout.premultiplied)
         for (const Lane& colour : layout.colours)
             for (std::size_t i = 0; i < n; ++i) out[4 * i + static_cast<std::size_t>(colour.lane)] *= out[4 * i + 3];
+    return strange;
 }
 
 /// Linear values of one channel (four floats apart) to codes of its type.
@@ -159,16 +162,19 @@ void store_span(const Layout& layout, const float* linear, std::byte* row, std::
 
 }  // namespace
 
-void load_group(const Part& part, const ChannelGroup& group, LinearImage& into) {
+std::size_t load_group(const Part& part, const ChannelGroup& group, LinearImage& into) {
     const Layout layout(part, group);
     into.data = data_window(part);
     into.display = display_window(part);
     into.pixel_aspect = pixel_aspect(part);
     into.pixels.resize(4 * layout.width * layout.height);
+    std::atomic<std::size_t> strange{0};
     for_rows(layout.height, [&](std::size_t y) {
-        load_row(layout, part.pixels.data() + y * layout.width * layout.pixel_bytes,
-                 into.pixels.data() + 4 * y * layout.width);
+        strange.fetch_add(load_row(layout, part.pixels.data() + y * layout.width * layout.pixel_bytes,
+                                   into.pixels.data() + 4 * y * layout.width),
+                          std::memory_order_relaxed);
     });
+    return strange;
 }
 
 LinearImage load_group(const Part& part, const ChannelGroup& group) {

@@ -1,6 +1,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include "noise/error.h"
 #include "warp/image/channels.h"
 #include "warp/image/file_error.h"
+#include "warp/image/orientation.h"
 #include "warp/image/picture.h"
 
 namespace eikonal {
@@ -91,7 +93,26 @@ void check_kind(const fs::path& path, const OIIO::ImageSpec& spec) {
         refuse(path, fmt::format("it has no pixels ({}x{}, {} channels)", spec.width, spec.height, spec.nchannels));
 }
 
-Picture read(const fs::path& path, bool with_pixels) {
+/// Whether the first and the last row or tile of the part at hand can be decoded.
+bool ends_are_readable(OIIO::ImageInput& input, int index) {
+    const OIIO::ImageSpec spec = input.spec();
+    const bool tiled = spec.tile_width > 0;
+    const int wide = tiled ? spec.tile_width : spec.width, high = tiled ? spec.tile_height : 1;
+    std::vector<std::byte> pixels(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high) *
+                                  spec.pixel_bytes(true));
+    const auto read_at = [&](int column, int row) {  // counted from the data window's corner, in tiles if there are
+        const int x = spec.x + column * wide, y = spec.y + row * high;
+        const int x_end = std::min(x + wide, spec.x + spec.width), y_end = std::min(y + high, spec.y + spec.height);
+        constexpr auto kNative = OIIO::TypeDesc::UNKNOWN;
+        return tiled ? input.read_tiles(index, 0, x, x_end, y, y_end, 0, 1, 0, spec.nchannels, kNative, pixels.data())
+                     : input.read_scanlines(index, 0, y, y_end, 0, 0, spec.nchannels, kNative, pixels.data());
+    };
+    return read_at(0, 0) && read_at((spec.width - 1) / wide, (spec.height - 1) / high);
+}
+
+enum class Wanted { Header, Ends, Pixels };
+
+Picture read(const fs::path& path, Wanted wanted) {
     check_file(path);
     if (!png_is_whole(path)) refuse(path, kTruncated);
     OIIO::ImageSpec hints;
@@ -101,7 +122,8 @@ Picture read(const fs::path& path, bool with_pixels) {
 
     Picture picture;
     picture.format = input->format_name();
-    if (with_pixels && picture.format == "jpeg" && !jpeg_is_whole(path)) refuse(path, kTruncated);
+    const bool marked = picture.format == "jpeg" || picture.format == "png";
+    if (wanted != Wanted::Header && picture.format == "jpeg" && !jpeg_is_whole(path)) refuse(path, kTruncated);
     for (int index = 0; input->seek_subimage(index, 0); ++index) {
         Part& part = picture.parts.emplace_back();
         part.spec = input->spec();
@@ -112,10 +134,14 @@ Picture read(const fs::path& path, bool with_pixels) {
         part.transfer = transfer_of(part.spec);
         part.premultiplied = part.spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
         classify_channels(part, picture.format);
-        if (!with_pixels) continue;
-        part.pixels.resize(part.spec.image_bytes(true));
-        if (!input->read_image(index, 0, 0, part.spec.nchannels, OIIO::TypeDesc::UNKNOWN, part.pixels.data()))
+        if (wanted == Wanted::Ends && !marked && !ends_are_readable(*input, index))
             refuse_content(path, input->geterror(), "the pixels are unreadable");
+        if (wanted == Wanted::Pixels) {
+            part.pixels.resize(part.spec.image_bytes(true));
+            if (!input->read_image(index, 0, 0, part.spec.nchannels, OIIO::TypeDesc::UNKNOWN, part.pixels.data()))
+                refuse_content(path, input->geterror(), "the pixels are unreadable");
+        }
+        if (may_lie_turned(picture.format)) turn_upright(part);
     }
     if (picture.parts.empty()) refuse_content(path, input->geterror(), "it holds no picture");
     input->close();
@@ -125,10 +151,13 @@ Picture read(const fs::path& path, bool with_pixels) {
 }  // namespace
 
 Picture read_picture(const fs::path& path) {
-    return read(path, true);
+    return read(path, Wanted::Pixels);
 }
 Picture read_picture_header(const fs::path& path) {
-    return read(path, false);
+    return read(path, Wanted::Header);
+}
+Picture read_picture_ends(const fs::path& path) {
+    return read(path, Wanted::Ends);
 }
 
 PixelWindow data_window(const Part& part) {

@@ -26,6 +26,16 @@ std::string reason(const OIIO::ImageOutput& output, const std::string& temporary
     return one_line(OIIO::Strutil::replace(output.geterror(), temporary, path.string(), true), fallback);
 }
 
+/// OpenImageIO chooses among PPM and PGM by the channels, whatever the extension says.
+void check_pnm(const OIIO::ImageOutput& output, const fs::path& path, const Picture& picture) {
+    if (std::string_view(output.format_name()) != "pnm") return;
+    const std::string extension = OIIO::Strutil::lower(path.extension().string());
+    const int channels = picture.parts.front().spec.nchannels;
+    if (extension == ".pgm" && channels > 1) refuse(path, "a .pgm is grey, and the picture has colour; name it .ppm");
+    if (extension == ".ppm" && channels == 1)
+        refuse(path, "a .ppm has three channels, and the picture is grey; name it .pgm");
+}
+
 /// Opens, writes every part, closes.
 void write_parts(OIIO::ImageOutput& output, const std::string& name, const fs::path& path, const Picture& picture) {
     std::vector<OIIO::ImageSpec> specs;
@@ -81,9 +91,10 @@ bool can_write_picture(const fs::path& path) {
     const auto output = OIIO::ImageOutput::create(path.string());
     OIIO::geterror();  // clears the thread's message
     if (!output) return false;
-    // GIF's 256 colours hold no frame of footage, and the others are no files
+    // GIF's 256 colours and PBM's two hold no frame of footage, and the others are no files
     const std::string_view name = output->format_name();
-    return name != "gif" && name != "term" && name != "null";
+    return name != "gif" && name != "term" && name != "null" &&
+           !OIIO::Strutil::iequals(path.extension().string(), ".pbm");
 }
 
 void write_picture(const fs::path& path, const Picture& picture) {
@@ -96,6 +107,7 @@ void write_picture(const fs::path& path, const Picture& picture) {
         OIIO::geterror();  // clears the thread's message, which names the temporary
         refuse(path, fmt::format("no image format has the extension '{}'", path.extension().string()));
     }
+    check_pnm(*output, path, picture);
     // OpenImageIO's TIFF writer goes back to its directories by reading, which it cannot do through a proxy.
     if (output->supports("ioproxy") && std::string_view(output->format_name()) != "tiff") {
         checked.emplace(file.temporary(), path);

@@ -150,21 +150,25 @@ void encode_values(OIIO::TypeDesc::BASETYPE type, const float* values, std::size
     });
 }
 
-EIKONAL_CLONES void decode_half_finite(const std::uint16_t* stored, float* values, std::size_t count) {
+EIKONAL_CLONES std::size_t decode_half_finite(const std::uint16_t* stored, float* values, std::size_t count) {
+    std::uint32_t strange = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t magnitude = stored[i] & 0x7fffu;
         const std::uint32_t value = std::bit_cast<std::uint32_t>(std::bit_cast<float>(magnitude << 13) * 0x1p112f);
         const std::uint32_t special = magnitude > 0x7c00u ? 0u : kLargestHalfBits;
         const std::uint32_t sign = static_cast<std::uint32_t>(stored[i] & 0x8000u) << 16;
         values[i] = std::bit_cast<float>((magnitude >= 0x7c00u ? special : value) | sign);
+        strange += magnitude >= 0x7c00u ? 1u : 0u;
     }
+    return strange;
 }
 
 namespace {
 
 #if defined(__x86_64__)
 /// float_to_half by the processor's own conversion, which rounds alike; returns how many it has done.
-__attribute__((target("avx,f16c"))) std::size_t encode_half_f16c(const float* values, std::uint16_t* stored, std::size_t count) {
+__attribute__((target("avx,f16c"))) std::size_t encode_half_f16c(const float* values, std::uint16_t* stored,
+                                                                 std::size_t count) {
     const __m256 largest = _mm256_set1_ps(65504.0f), sign = _mm256_set1_ps(-0.0f);
     std::size_t i = 0;
     for (; i + 8 <= count; i += 8) {
@@ -189,8 +193,13 @@ void encode_half(const float* values, std::uint16_t* stored, std::size_t count) 
     for (; done < count; ++done) stored[done] = float_to_half(values[done]);
 }
 
-EIKONAL_CLONES void make_finite(float* values, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) values[i] = finite(values[i]);
+EIKONAL_CLONES std::size_t make_finite(float* values, std::size_t count) {
+    std::uint32_t strange = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        strange += (std::bit_cast<std::uint32_t>(values[i]) & kMagnitude) >= kInfinity ? 1u : 0u;
+        values[i] = finite(values[i]);
+    }
+    return strange;
 }
 
 }  // namespace eikonal

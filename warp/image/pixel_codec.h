@@ -23,13 +23,14 @@ void decode_values(OIIO::TypeDesc::BASETYPE type, const std::byte* stored, std::
 void encode_values(OIIO::TypeDesc::BASETYPE type, const float* values, std::size_t lanes, std::byte* stored,
                    std::size_t stride, std::size_t count);
 
-/// Contiguous half to float; NaN becomes 0, infinities ±kLargestHalf. Vectorised.
-void decode_half_finite(const std::uint16_t* stored, float* values, std::size_t count);
+/// Contiguous half to float; NaN becomes 0, infinities ±kLargestHalf. Returns how many of them there were. Vectorised.
+std::size_t decode_half_finite(const std::uint16_t* stored, float* values, std::size_t count);
 
 /// Contiguous float to half, as encode_values. Vectorised.
 void encode_half(const float* values, std::uint16_t* stored, std::size_t count);
 
-/// Makes values finite in place: NaN becomes 0, infinities ±kLargestHalf. Vectorised.
-void make_finite(float* values, std::size_t count);
+/// Makes values finite in place: NaN becomes 0, infinities ±kLargestHalf. Returns how many of them there were.
+/// Vectorised.
+std::size_t make_finite(float* values, std::size_t count);
 
 }  // namespace eikonal

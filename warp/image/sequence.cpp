@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <system_error>
 #include <unordered_set>
 
@@ -36,19 +37,33 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
+/// The same of a list of frames, whose numbers have an end.
+std::optional<int> take_frame(std::string_view& rest, std::string_view text) {
+    const std::string_view before = rest;
+    const auto frame = take_integer(rest);
+    if (frame) return frame;
+    const bool negative = before.starts_with('-');
+    const std::size_t digits = before.find_first_not_of("0123456789", negative ? 1 : 0);
+    const std::string_view number = before.substr(0, digits);
+    if (number.size() > (negative ? 1u : 0u))
+        refuse(text, fmt::format("{} is beyond the frame numbers, which end at ±{}", number,
+                                 std::numeric_limits<int>::max()));
+    return std::nullopt;
+}
+
 struct Range {
     std::int64_t first, last, step;
 };
 
 Range parse_range(std::string_view item, std::string_view text) {
     std::string_view rest = trimmed(item);
-    const auto first = take_integer(rest);
+    const auto first = take_frame(rest, text);
     if (!first) refuse(text, rest.empty() ? "a frame number is missing" : "this is not a frame number or range");
     Range range{*first, *first, 1};
     if (rest.empty()) return range;
     if (rest.front() != '-') refuse(text, fmt::format("'{}' after frame {} means nothing", rest, *first));
     rest.remove_prefix(1);
-    const auto last = take_integer(rest);
+    const auto last = take_frame(rest, text);
     if (!last) refuse(text, fmt::format("the range from {} has no end", *first));
     range.last = *last;
     if (rest.empty()) return range;
@@ -141,6 +156,16 @@ std::optional<int> FilePattern::frame_of(std::string_view name) const {
     const auto frame = take_integer(rest);
     if (!frame || !rest.empty() || at(*frame).filename().string() != name) return std::nullopt;
     return frame;
+}
+
+std::optional<NumberInName> number_in_name(const fs::path& path) {
+    constexpr std::size_t kFewest = 4, kMost = 7;  // digits
+    const std::string stem = path.stem().string();
+    const std::size_t before = stem.find_last_not_of("0123456789");
+    if (before == std::string::npos || before == 0 || (stem[before] != '.' && stem[before] != '_')) return std::nullopt;
+    std::string_view digits = std::string_view(stem).substr(before + 1);
+    if (digits.size() < kFewest || digits.size() > kMost) return std::nullopt;
+    return NumberInName{*take_integer(digits), stem[before] == '.'};
 }
 
 std::vector<int> FilePattern::find_frames() const {

@@ -18,8 +18,8 @@ namespace eikonal {
 inline constexpr std::size_t kMostFrames = 10'000'000;
 
 /// Frames of "1001-1100", "1-9x2" or "1-9:2" (step), "10-1" (backwards), comma lists, negatives ("-5--1", "-3-4"), in
-/// the order given, repeats dropped. UserError naming the text: empty, not such a list, step below 1, more than
-/// kMostFrames.
+/// the order given, repeats dropped. UserError naming the text: empty, not such a list, step below 1, numbers beyond an
+/// int's, more than kMostFrames.
 std::vector<int> parse_frames(std::string_view text);
 
 /// The names of a sequence's files, or the name of a single one.
@@ -44,6 +44,16 @@ class FilePattern {
     std::string before_, after_;  ///< of the file name, around the number
     std::optional<int> digits_;
 };
+
+/// A number of 4 to 7 digits right before the extension.
+struct NumberInName {
+    int number = 0;
+    bool after_dot = false;  ///< plate.1002.exr, as sequences are named; else plate_1002.exr, as photographs are, too
+};
+
+/// The number in the name of a single file that may be one of a sequence. Nothing: no such number, or nothing before
+/// it, or neither a dot nor an underscore.
+std::optional<NumberInName> number_in_name(const std::filesystem::path& path);
 
 /// Whether the extension is a movie's (.mp4 .mov .mkv …; case does not matter).
 bool is_movie(const std::filesystem::path& path);
