@@ -157,7 +157,7 @@ struct Contender {
             const auto count = static_cast<double>(pictures.size());
             r.picture.psnr += p.psnr / count;
             r.picture.ssim += p.ssim / count;
-            r.picture.visible += p.visible / count;
+            r.picture.butteraugli += p.butteraugli / count;
         }
         if (!map_seconds.empty()) {
             r.map_seconds = median(map_seconds);

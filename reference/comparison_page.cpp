@@ -200,8 +200,9 @@ std::string method(const Comparison& c) {
         "is "
         "a jump of depth by more than {:g} %, and what lies within {} px of it, or within its true "
         "displacement if that is more.</p>\n"
-        "<p>Pictures are compared as shown: PSNR and SSIM of sRGB codes; <i>visible</i> is the part of the pixels that "
-        "an eye tells apart (ΔE*ab above {:g} after its own blur). Times are this machine’s wall times on all threads; "
+        "<p>Pictures are compared as shown: PSNR and SSIM of sRGB codes; <i>butteraugli</i> is what an eye "
+        "notices, by libjxl (its {:g}-norm; from about 1 on a close look tells the pictures apart). Times are this "
+        "machine’s wall times on all threads; "
         "<i>times faster</i> is against "
         "the "
         "{} tracer’s picture with {} rays a pixel, in the same run. Memory is by how "
@@ -209,7 +210,7 @@ std::string method(const Comparison& c) {
         "the resident memory of the process grew at its highest while a model’s shot and first map were made.</p>\n"
         "<p>Rows in colour are the efficient ones: no other model, nor the plate itself, is both quicker and more "
         "exact (p95).{}</p>\n",
-        100 * kSilhouetteJump, kSilhouetteReach, kJustVisible, c.integrator, c.samples,
+        100 * kSilhouetteJump, kSilhouetteReach, kButteraugliNorm, c.integrator, c.samples,
         c.over_time() ? " <i>From frame to frame</i> is the error of each pixel’s change of displacement between "
                         "consecutive frames: flicker, which the eye sees first."
                       : "");

@@ -80,8 +80,7 @@ std::vector<Column> columns(const Comparison& comparison) {
     };
     add(ColumnGroup::Picture, "psnr_db", "PSNR dB", true, [](C, M m) { return Value(m.picture.psnr); });
     add(ColumnGroup::Picture, "ssim", "SSIM", true, [](C, M m) { return Value(m.picture.ssim); });
-    add(ColumnGroup::Picture, "visible_percent", "visible %", true,
-        [](C, M m) { return Value(100 * m.picture.visible); });
+    add(ColumnGroup::Picture, "butteraugli", "butteraugli", true, [](C, M m) { return Value(m.picture.butteraugli); });
     add(ColumnGroup::Cost, "setup_ms", "once a shot ms", false, [](C, M m) { return positive(1e3 * m.setup_seconds); });
     add(ColumnGroup::Cost, "map_ms", "map ms", true, [](C, M m) { return positive(1e3 * m.map_seconds); });
     add(ColumnGroup::Cost, "warp_ms", "warp ms", true, [](C, M m) { return positive(1e3 * m.warp_seconds); });

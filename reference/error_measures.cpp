@@ -1,8 +1,15 @@
 #include "reference/error_measures.h"
 
+#include <fmt/format.h>
+#include <jxl/butteraugli.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
 
 #include "warp/image/depth_map.h"
 #include "warp/image/transfer.h"
@@ -26,12 +33,12 @@ Plane luma(std::span<const float> rgba) {
     return plane;
 }
 
-/// Weighted mean around each pixel, Gaussian of a standard deviation [px] up to kSsimSigma, edge pixels repeated.
-Plane blurred(const Plane& in, int width, int height, double sigma) {
+/// Weighted mean around each pixel, Gaussian, edge pixels repeated.
+Plane blurred(const Plane& in, int width, int height) {
     std::array<double, 2 * kSsimRadius + 1> weights{};
     double sum = 0;
     for (int k = -kSsimRadius; k <= kSsimRadius; ++k)
-        sum += weights[static_cast<std::size_t>(k + kSsimRadius)] = std::exp(-k * k / (2 * sigma * sigma));
+        sum += weights[static_cast<std::size_t>(k + kSsimRadius)] = std::exp(-k * k / (2 * kSsimSigma * kSsimSigma));
     for (double& w : weights) w /= sum;
     const auto pass = [&](const Plane& from, bool rows) {
         Plane to(from.size());
@@ -58,7 +65,7 @@ double ssim(const Plane& a, const Plane& b, int width, int height) {
         std::transform(p.begin(), p.end(), q.begin(), result.begin(), std::multiplies<>());
         return result;
     };
-    const auto blur = [&](const Plane& plane) { return blurred(plane, width, height, kSsimSigma); };
+    const auto blur = [&](const Plane& plane) { return blurred(plane, width, height); };
     const Plane mean_a = blur(a), mean_b = blur(b), aa = blur(products(a, a)), bb = blur(products(b, b)),
                 ab = blur(products(a, b));
     double sum = 0;
@@ -82,36 +89,30 @@ double psnr(std::span<const float> a, std::span<const float> b) {
     return -10 * std::log10(sum / (0.75 * static_cast<double>(a.size())));
 }
 
-/// L*, a*, b* of what reaches the eye.
-std::array<Plane, 3> seen_colours(std::span<const float> rgba, int width, int height) {
-    std::array<Plane, 3> light;
-    for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t i = c; i < rgba.size(); i += 4) light[c].push_back(limited(rgba[i]));
-        light[c] = blurred(light[c], width, height, kEyeSigma);
-    }
-    // CIE 1976, relative to the white of sRGB
-    const auto root = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
-    for (std::size_t i = 0; i < light[0].size(); ++i) {
-        const double r = light[0][i], g = light[1][i], b = light[2][i];
-        const double x = root((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
-        const double y = root(0.2126 * r + 0.7152 * g + 0.0722 * b);
-        const double z = root((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.0890);
-        light[0][i] = 116 * y - 16;
-        light[1][i] = 500 * (x - y);
-        light[2][i] = 200 * (y - z);
-    }
-    return light;
-}
-
-double visible(std::span<const float> a, std::span<const float> b, int width, int height) {
-    const std::array<Plane, 3> p = seen_colours(a, width, height), q = seen_colours(b, width, height);
-    double count = 0;
-    for (std::size_t i = 0; i < p[0].size(); ++i) {
-        double square = 0;
-        for (std::size_t c = 0; c < 3; ++c) square += (p[c][i] - q[c][i]) * (p[c][i] - q[c][i]);
-        count += square > kJustVisible * kJustVisible ? 1 : 0;
-    }
-    return count / static_cast<double>(p[0].size());
+double butteraugli(std::span<const float> a, std::span<const float> b, int width, int height) {
+    // the library finds nothing in pictures of less than 8 pixels a side: their edges are repeated
+    const int w = std::max(width, 8), h = std::max(height, 8);
+    const auto light = [&](std::span<const float> rgba) {
+        std::vector<float> rgb;
+        rgb.reserve(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
+        for (int y = 0; y < h; ++y)
+            for (int x = 0; x < w; ++x) {
+                const auto i = static_cast<std::size_t>(std::min(y, height - 1) * width + std::min(x, width - 1));
+                for (std::size_t c = 0; c < 3; ++c) rgb.push_back(limited(rgba[4 * i + c]));
+            }
+        return rgb;
+    };
+    const std::vector<float> p = light(a), q = light(b);
+    const JxlPixelFormat format{3, JXL_TYPE_FLOAT, JXL_NATIVE_ENDIAN, 0};
+    const std::unique_ptr<JxlButteraugliApi, decltype(&JxlButteraugliApiDestroy)> eye(JxlButteraugliApiCreate(nullptr),
+                                                                                      JxlButteraugliApiDestroy);
+    JxlButteraugliApiSetHFAsymmetry(eye.get(), 1);  // detail lost counts as much as detail won
+    const std::unique_ptr<JxlButteraugliResult, decltype(&JxlButteraugliResultDestroy)> result(
+        JxlButteraugliCompute(eye.get(), static_cast<std::uint32_t>(w), static_cast<std::uint32_t>(h), &format,
+                              p.data(), p.size() * sizeof p[0], &format, q.data(), q.size() * sizeof q[0]),
+        JxlButteraugliResultDestroy);
+    if (!result) throw std::runtime_error(fmt::format("libjxl compares no pictures of {} × {}", width, height));
+    return JxlButteraugliResultGetDistance(result.get(), kButteraugliNorm);
 }
 
 /// Whether a silhouette passes between the second and the third of four neighbours in a row.
@@ -141,7 +142,7 @@ ErrorStatistics error_statistics(std::vector<float> errors) {
 }
 
 PictureError picture_error(std::span<const float> a, std::span<const float> b, int width, int height) {
-    return {psnr(a, b), ssim(luma(a), luma(b), width, height), visible(a, b, width, height)};
+    return {psnr(a, b), ssim(luma(a), luma(b), width, height), butteraugli(a, b, width, height)};
 }
 
 std::vector<int> silhouette_distance(std::span<const float> depth, int width, int height, Projection projection) {

@@ -1,8 +1,9 @@
 /// How far a warp is from the truth: of displacement maps in pixels, of pictures as the eye sees them.
 ///
 /// Displacement errors are |d - d_true| [px], of the pixels that have a true answer. Pictures are compared as they are
-/// shown, each channel limited to 0 ... 1: PSNR and SSIM on sRGB codes, what an eye tells apart by CIELAB colours of
-/// linear light that the eye has blurred. Images are interleaved linear R, G, B, A, row 0 on top.
+/// shown, each channel limited to 0 ... 1: PSNR and SSIM on sRGB codes, what an eye tells apart by libjxl's butteraugli
+/// on linear light (its last bits may differ from processor to processor). Images are interleaved linear R, G, B, A,
+/// row 0 on top.
 #pragma once
 
 #include <span>
@@ -21,9 +22,8 @@ inline constexpr double kSsimSigma = 1.5;
 inline constexpr int kSsimRadius = 5;
 inline constexpr double kSsimC1 = 0.01 * 0.01, kSsimC2 = 0.03 * 0.03;
 
-/// Just noticeable ΔE*ab (Mahy, Van Eycken, Oosterlinck 1994), and the eye's own blur [px] where 40 pixels are a
-/// degree.
-inline constexpr double kJustVisible = 2.3, kEyeSigma = 1.1;
+/// The norm over the picture that butteraugli's authors rank pictures by.
+inline constexpr float kButteraugliNorm = 3;
 
 /// Of a set of errors [px]; all 0 for none.
 struct ErrorStatistics {
@@ -36,10 +36,10 @@ ErrorStatistics error_statistics(std::vector<float> errors);
 struct PictureError {
     double psnr = 0;  ///< 10 log10(1/mean square) over R, G, B [dB]; infinite for equal pictures
     double ssim = 0;  ///< mean over the picture, of luma; 1 for equal pictures
-    /// Part of the pixels that an eye tells apart, 0 ... 1: ΔE*ab (CIE 1976) above kJustVisible after a Gaussian blur
-    /// of kEyeSigma, the chief part of S-CIELAB's (Zhang, Wandell 1996). (OpenImageIO's compare_Yee will not do:
-    /// version 2.4 finds no difference between any two greys.)
-    double visible = 0;
+    /// Perceptual difference: the kButteraugliNorm-norm of butteraugli's map of distances, lost and new detail counted
+    /// alike; 1 is about what an eye that looks closely just notices. (OpenImageIO's compare_Yee will not do: version
+    /// 2.4 finds no two greys different.)
+    double butteraugli = 0;
 };
 /// a, b: width * height pixels. Infinite values count as 1, NaN as 0.
 PictureError picture_error(std::span<const float> a, std::span<const float> b, int width, int height);

@@ -49,7 +49,7 @@ TEST(PictureError, OfEvenPictures) {
     const PictureError same = picture_error(half, half, kSide, kSide);
     EXPECT_TRUE(std::isinf(same.psnr) && same.psnr > 0);
     EXPECT_NEAR(same.ssim, 1, 1e-12);
-    EXPECT_EQ(same.visible, 0);
+    EXPECT_EQ(same.butteraugli, 0);
 }
 
 TEST(PictureError, IsOfWhatIsShown) {
@@ -70,30 +70,43 @@ TEST(PictureError, SeesOtherColours) {
             (x / 4 % 2 == 0 ? red : blue)[i] = 0.9f;
             (x / 4 % 2 == 0 ? blue : red)[i + 2] = 0.9f;
         }
-    EXPECT_GT(picture_error(red, blue, kSide, kSide).visible, 0.5);
+    EXPECT_GT(picture_error(red, blue, kSide, kSide).butteraugli, 10);
 }
 
-// L* of linear 0.5 is 76.07, so that white differs by 24; a code in 255 of grey is ΔE 0.4. Stripes moved by half their
-// width show wherever they are wide enough for the eye.
+// A tenth of a code in 255 goes unnoticed, ten do not; a displacement is noticed the more the larger it and the
+// contrast are; either picture may come first.
 TEST(PictureError, SeesOtherGreys) {
     constexpr int kSide = 64;
-    const auto visible = [](const std::vector<float>& a, const std::vector<float>& b) {
-        return picture_error(a, b, kSide, kSide).visible;
+    const auto distance = [](const std::vector<float>& a, const std::vector<float>& b) {
+        return picture_error(a, b, kSide, kSide).butteraugli;
     };
-    EXPECT_EQ(visible(grey(kSide, kSide, 0), grey(kSide, kSide, 1)), 1);
-    EXPECT_EQ(visible(grey(kSide, kSide, 0.5F), grey(kSide, kSide, 1)), 1);
-    EXPECT_EQ(visible(grey(kSide, kSide, 0.5F), grey(kSide, kSide, 0.505F)), 0);
-    const auto stripes = [](int width, int moved) {
-        auto picture = grey(kSide, kSide, 0.2F);
+    EXPECT_LT(distance(grey(kSide, kSide, 0.5F), grey(kSide, kSide, 0.5005F)), 0.5);
+    EXPECT_GT(distance(grey(kSide, kSide, 0.5F), grey(kSide, kSide, 0.55F)), 5);
+    // stripes 16 px wide, moved by part of a pixel
+    const auto stripes = [](double contrast, double moved) {
+        auto picture = grey(kSide, kSide, 0);
         for (int y = 0; y < kSide; ++y)
-            for (int x = 0; x < kSide; ++x)
+            for (int x = 0; x < kSide; ++x) {
+                const double bright = x % 32 < 16 ? (x % 32 == 0 ? 1 - moved : 1) : (x % 32 == 16 ? moved : 0);
                 for (std::size_t c = 0; c < 3; ++c)
-                    if ((x + moved) / width % 2 == 0) picture[4 * static_cast<std::size_t>(y * kSide + x) + c] = 0.8F;
+                    picture[4 * static_cast<std::size_t>(y * kSide + x) + c] =
+                        static_cast<float>(0.5 + contrast * (bright - 0.5));
+            }
         return picture;
     };
-    EXPECT_GT(visible(stripes(16, 0), stripes(16, 1)), 0.1) << "a displacement of a pixel shows at the edges";
-    EXPECT_LT(visible(stripes(16, 0), stripes(16, 1)), 0.4) << "and nowhere else";
-    EXPECT_GT(visible(stripes(8, 0), stripes(8, 4)), 0.4);
+    const double slight = distance(stripes(0.2, 0), stripes(0.2, 0.05)),
+                 half = distance(stripes(0.2, 0), stripes(0.2, 0.5));
+    EXPECT_LT(slight, 1);
+    EXPECT_GT(half, 2);
+    EXPECT_GT(distance(stripes(0.6, 0), stripes(0.6, 0.5)), 1.5 * half);
+    EXPECT_NEAR(distance(stripes(0.2, 0.5), stripes(0.2, 0)), half, 0.2 * half);
+}
+
+TEST(PictureError, HoldsForTheSmallestPictures) {
+    for (const auto& [w, h] : {std::pair{1, 1}, {3, 1}, {1, 9}, {8, 8}}) {
+        EXPECT_EQ(picture_error(grey(w, h, 0.5F), grey(w, h, 0.5F), w, h).butteraugli, 0) << w << " x " << h;
+        EXPECT_GT(picture_error(grey(w, h, 0.2F), grey(w, h, 0.8F), w, h).butteraugli, 5) << w << " x " << h;
+    }
 }
 
 // Equal means, codes a ± d and a ∓ d in a checkerboard finer than the window: the structures are opposite.
@@ -294,7 +307,7 @@ TEST(Comparer, WithoutAirNothingDiffers) {
         EXPECT_EQ(m.all.largest, 0) << m.name;
         EXPECT_EQ(m.temporal.largest, 0) << m.name;
         EXPECT_TRUE(std::isinf(m.picture.psnr)) << m.name;
-        EXPECT_EQ(m.picture.visible, 0) << m.name;
+        EXPECT_EQ(m.picture.butteraugli, 0) << m.name;
     }
     EXPECT_EQ(rows, 2) << "none and default";
     EXPECT_GT(c.tracer_seconds, 0);
