@@ -9,7 +9,8 @@
 ///
 /// Thin screens (form = "screens") are not a function of position: the bend of a slab is spread evenly over it
 /// (noise/screen_layout.h) and taken at the point where the ray's tangent meets the screen,
-///     F⊥ = ∇⊥ψ_m(x⊥ + (w_m - z) p⊥/p_z)/(√L δ),   L = |p|/p_z,   near_m < z < far_m,
+///     F⊥ = M ∇⊥ψ_m(x⊥ + (w_m - z) s)/(√L δ),   s = p⊥/p_z,   L = |p|/p_z,
+///     M = 1 + s sᵀ/(L + 1),   near_m < z < far_m,
 /// z the depth along the frame's axis, with no force along the axis: the same air that the warp bends rays by, *added*
 /// (noise/screen_force.h). They have no index of their own: |dx/du|² = n² holds for every other medium only.
 ///

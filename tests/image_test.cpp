@@ -127,7 +127,7 @@ class ImageTest : public testing::Test {
         Part part;
         part.spec = s;
         part.pixels = content(s);
-        part.transfer = transfer_of(s);
+        part.transfer = transfer_of(s, format);
         part.premultiplied = s.get_int_attribute("oiio:UnassociatedAlpha") == 0;
         classify_channels(part, format);
         return part;
@@ -569,6 +569,9 @@ TEST_F(DepthTest, FindsItsChannelAndWindow) {
     const PixelWindow overscan{-1, -1, 6, 2};
     EXPECT_EQ(depth_from_picture(picture(values, TypeDesc::FLOAT), "d", options, overscan, window).metres,
               Metres({77, 77, 77, 77, 77, 77, 77, 1, 2, 3, 4, 77}));
+    const float nan = std::nanf("");
+    EXPECT_THROW(depth_from_picture(picture({nan, 0, nan, 0}, TypeDesc::FLOAT), "d", options, overscan, window),
+                 FrameError);
 }
 
 TEST_F(DepthTest, MatteFromAFile) {

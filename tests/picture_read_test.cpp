@@ -133,6 +133,18 @@ TEST_F(PictureReadTest, OrientationOfFilmFormatsIsCarriedAlone) {
     EXPECT_EQ(part.spec.get_int_attribute("Orientation"), 6);
 }
 
+// PFM holds linear light, whatever the library calls it.
+TEST_F(PictureReadTest, FloatsOfPfmAreLinear) {
+    const fs::path path = folder / "a.pfm";
+    std::ofstream file(path, std::ios::binary);
+    file << "PF\n4 2\n-1.0\n";
+    for (int i = 0; i < 8; ++i)
+        for (const float v : {0.1F, 0.5F, 300.0F}) file.write(reinterpret_cast<const char*>(&v), sizeof v);
+    file.close();
+    const Picture picture = read_picture(path);
+    EXPECT_EQ(picture.parts.front().transfer, Transfer::Linear);
+}
+
 TEST_F(PictureReadTest, EndsTellWhatIsTruncated) {
     const auto noise = [](int x, int y) { return static_cast<std::uint8_t>((x * 7919 + y * 104729) % 251); };
     ImageSpec plain(120, 90, 1, TypeDesc::UINT8), half(120, 90, 1, TypeDesc::HALF), tiled = half, backwards = half;

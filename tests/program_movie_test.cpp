@@ -106,7 +106,10 @@ TEST_F(MovieTest, OggTakesTheora) {
     make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-an"});
     silent(warp("a.mp4", "b.ogv"));
     EXPECT_EQ(facts("b.ogv").codecs, Words{"theora"});
-    EXPECT_NE(warp("a.mp4", "b.ogv").err.find("already there and kept;"), std::string::npos);
+    EXPECT_NE(warp("a.mp4", "b.ogv").err.find("already there and kept (about 12 frames);"), std::string::npos);
+    const Ended fewer = warp("a.mp4", "b.ogv", {"--frames", "1-6"});
+    EXPECT_EQ(fewer.status, 2);
+    EXPECT_NE(fewer.err.find("already there with about 12 frames, not the 6"), std::string::npos) << fewer.err;
 }
 
 // Its length is not told: the number of frames is known at the end.
@@ -118,6 +121,9 @@ TEST_F(MovieTest, TransportStreams) {
     EXPECT_TRUE(ended.err.starts_with("12 frames, ")) << ended.err;
     EXPECT_EQ(facts("b.ts").frames, "12");
     EXPECT_EQ(facts("b.ts").codecs, facts("a.ts").codecs);
+    EXPECT_NE(warp("a.ts", "b.ts").err.find("kept (12 frames)"), std::string::npos);
+    silent(warp("a.ts", "some.mkv", {"--frames", "1-6"}));
+    EXPECT_EQ(warp("a.ts", "some.mkv").status, 2) << "it has 6 of 12 frames";
 }
 
 TEST_F(MovieTest, FieldOrderIsKept) {

@@ -84,7 +84,7 @@ dvec3 colour(const RenderedFrame& frame, int x, int y) {
 }
 
 bool same(const std::vector<float>& a, const std::vector<float>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
 }
 
 bool same(const RenderedFrame& a, const RenderedFrame& b) {

@@ -167,6 +167,7 @@ bool Outputs::keep_movie(const PixelWindow& display, const AskedFrames& asked) c
     std::error_code ignored;
     if (!fs::exists(file, ignored)) return false;
     std::optional<std::int64_t> frames;
+    bool estimated = false;
     PixelWindow size;
     try {
         const MovieReader reader(file);
@@ -175,15 +176,20 @@ bool Outputs::keep_movie(const PixelWindow& display, const AskedFrames& asked) c
         const std::int64_t stated = reader.frame_count().value_or(0);
         if (frames && *frames + slack(stated, reader.count_is_exact()) < stated)
             throw FrameError("it is cut off between two frames");
+        if (!frames && stated > 0) {  // Theora: its length tells
+            frames = stated;
+            estimated = true;
+        }
     } catch (const FrameError&) {
         fmt::print(stderr, "eikonal: '{}' is damaged and made anew\n", file.string());
         return false;
     }
     if (const std::string refusal = other_size(output.option, file, size, display); !refusal.empty())
         throw UserError(refusal);
-    const std::string held = frames ? fmt::format("{} frame{}", *frames, *frames == 1 ? "" : "s") : "";
+    const std::string held =
+        frames ? fmt::format("{}{} frame{}", estimated ? "about " : "", *frames, *frames == 1 ? "" : "s") : "";
     const auto wanted = static_cast<std::int64_t>(asked.count);
-    const std::int64_t more = slack(wanted, asked.exact);
+    const std::int64_t more = slack(wanted, asked.exact && !estimated);
     if (frames && wanted > 0 && (*frames > wanted + more || (*frames + more < wanted && !asked.may_lack_some)))
         throw UserError(fmt::format("{}: '{}' is already there with {}, not the {} that are asked for; {}",
                                     output.option, file.string(), held, wanted, kMakeAnew));

@@ -12,6 +12,7 @@
 #include "warp/app/pipeline.h"
 #include "warp/app/report.h"
 #include "warp/app/shot.h"
+#include "warp/image/movie_reader.h"
 #include "warp/image/movie_writer.h"
 
 namespace eikonal {
@@ -268,6 +269,14 @@ RunResult warp_frames(const WarpOptions& options, const Footage& footage, const 
     return result;
 }
 
+/// What an existing movie should hold. A source whose container counts nothing is read through for it.
+AskedFrames asked_of_movie(const WarpOptions& options, const Footage& footage, const std::vector<int>& frames) {
+    const bool counted =
+        footage.kind != FootageKind::Movie || options.run.frames || (footage.count_is_exact && !frames.empty());
+    const auto found = counted || !std::filesystem::exists(options.output) ? std::nullopt : count_frames(options.input);
+    return {found ? static_cast<std::size_t>(*found) : frames.size(), counted || found, options.run.skip_bad_frames};
+}
+
 }  // namespace
 
 int run(const WarpOptions& options) {
@@ -301,9 +310,8 @@ int run(const WarpOptions& options) {
     std::size_t kept = 0;
     if (!options.run.overwrite) {
         if (to_movie) {
-            const bool exact = footage.kind != FootageKind::Movie || footage.count_is_exact || options.run.frames;
-            const AskedFrames asked{frames.size(), exact, options.run.skip_bad_frames};
-            if (!options.run.explain && outputs.keep_movie(footage.display, asked)) return hole ? 1 : 0;
+            if (!options.run.explain && outputs.keep_movie(footage.display, asked_of_movie(options, footage, frames)))
+                return hole ? 1 : 0;
         } else {
             kept = outputs.keep_finished(frames, footage.display);
         }

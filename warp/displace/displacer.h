@@ -77,7 +77,8 @@ class Displacer {
 
     /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line), ∂d_x/∂x of the map, at the
     /// strength that the media have before any falloff: near 1 rays fold. Gradient noise and blobs: estimated from
-    /// kRmsRays pairs of pixels. Mirages, which fold by nature, are not counted.
+    /// pairs of pixels, those of blobs where blobs are. Mirages, which fold
+    /// by nature, are not counted.
     double focusing_variance(double D) const;
 
     /// For --verbose: one line a medium: its model and why, its sizes; and what is left out.

@@ -35,6 +35,8 @@ constexpr double kManySteps = 2000;
 /// Steps that all rays of an estimate take together, about, and the fewest rays that it is taken from.
 constexpr double kRmsSteps = 256e3;
 constexpr int kFewestRmsRays = 32;
+/// Pairs of pixels among blobs.
+constexpr std::uint64_t kBlobPairs = 96;
 /// Samples of the largest spline that is made finer than its lattice.
 constexpr std::size_t kMostPadded = 256 * 256 * 256;
 /// A step in gradient noise is half an inner scale, and at most this part of the finest octave's cell.
@@ -410,7 +412,40 @@ MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& la
     return sum;
 }
 
+double MediaLayers::blob_focusing(const MediumLayer& layer, double D) const {
+    const LayerInstant instant = this->instant(layer, reference_, 0, D, D, 1);
+    const auto& bends = std::get<BlobBends>(instant);
+    const std::vector<SeenBlob>& blobs = bends.seen();
+    if (blobs.empty()) return 0;
+    const RandomStream stream(1, "focusing of blobs");
+    const PixelWindow picture{0, 0, settings_.width, settings_.height};
+    double sum = 0;
+    int pairs = 0;
+    for (std::uint64_t i = 0; i < kBlobPairs; ++i) {
+        check_cancelled(settings_.cancelled);
+        const SeenBlob& blob =
+            blobs[static_cast<std::size_t>(stream.uniform(4 * i) * static_cast<double>(blobs.size()))];
+        const double scale = perspective() ? 1 / std::max(blob.forward, blob.sigma) : 1;
+        const auto aside = [&](std::uint64_t c) { return (3 * stream.uniform(4 * i + c) - 1.5) * blob.sigma; };
+        const dvec2 place = reference_.pixel(scale * dvec2(blob.right + aside(1), blob.up + aside(2)));
+        if (!(place.x >= 0 && place.x < picture.width && place.y >= 0 && place.y < picture.height)) continue;
+        const auto x = static_cast<int>(place.x), y = static_cast<int>(place.y);
+        const bool across = i % 2 == 0;
+        std::vector<Band> bands{bends.every_pixel({x, y, across ? 2 : 1, across ? 1 : 2}, D)};
+        BandRows row;
+        row.start(bands, y);
+        const Shift d = row.at(x, D);
+        if (!across) row.start(bands, y + 1);
+        const Shift next = row.at(across ? x + 1 : x, D);
+        const double slope = across ? double{next.x} - d.x : double{next.y} - d.y;
+        sum += slope * slope;
+        ++pairs;
+    }
+    return pairs > 0 ? sum / pairs : 0;
+}
+
 double MediaLayers::focusing_variance(const MediumLayer& layer, double D) const {
+    if (std::holds_alternative<BlobCloud>(layer.field)) return blob_focusing(layer, D);
     const double strength2 = strength_ * strength_;
     if (const auto* screens = std::get_if<ScreenField>(&layer.field))
         return strength2 * screens->focusing_variance(D, perspective());

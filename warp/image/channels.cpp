@@ -159,7 +159,7 @@ void classify_channels(Part& part, std::string_view format) {
                           [](const ChannelGroup& group) { return group.layer.empty(); });
 }
 
-Transfer transfer_of(const OIIO::ImageSpec& spec) {
+Transfer transfer_of(const OIIO::ImageSpec& spec, std::string_view format) {
     std::string space;
     for (const char c : lower(std::string(spec.get_string_attribute("oiio:ColorSpace"))))
         if (c != '_' && c != ' ' && c != '-') space += c;
@@ -167,7 +167,8 @@ Transfer transfer_of(const OIIO::ImageSpec& spec) {
     if (starts("lin") || starts("scenelin") || starts("aces") || space == "raw" || space == "data")
         return Transfer::Linear;
     if (starts("srgb")) return Transfer::SRGB;
-    if (starts("rec709") || starts("bt709")) return Transfer::BT709;
+    const bool linear_floats = format == "pnm" && spec.format.is_floating_point();  // PFM, which is called Rec709 too
+    if ((starts("rec709") || starts("bt709")) && !linear_floats) return Transfer::BT709;
     if (starts("kodaklog") || starts("cineon")) return Transfer::KodakLog;
     if (starts("adobergb")) return Transfer::Gamma22;
     if (starts("gamma")) {

@@ -23,7 +23,8 @@ void classify_channels(Part& part, std::string_view format);
 /// The transfer that the metadata and the pixel type of a picture mean.
 /// oiio:ColorSpace linear, scene_linear, ACES…: Linear; sRGB: SRGB; Rec709: BT709; KodakLog, Cineon: KodakLog;
 /// GammaX.Y and GammaCorrected with oiio:Gamma: Linear near 1, else Gamma22, the nearest there is. Anything else:
-/// Linear for float types and SRGB for integers.
-Transfer transfer_of(const OIIO::ImageSpec& spec);
+/// Linear for float types and SRGB for integers. format: OpenImageIO's name; the floats of PFM ("pnm") are linear,
+/// though it calls them Rec709.
+Transfer transfer_of(const OIIO::ImageSpec& spec, std::string_view format);
 
 }  // namespace eikonal

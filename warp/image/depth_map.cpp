@@ -45,6 +45,16 @@ std::vector<Remark> remarks_on(const Plane& plane, const std::filesystem::path& 
                                         file.string(), zeros, plane.values.size(), options.far)}};
 }
 
+/// Whether the file has a depth other than zero and NaN anywhere; one without pixels here is all background.
+bool holds_depth(const Plane& plane) {
+    const PixelWindow &w = plane.window, &held = plane.held;
+    for (int y = held.y0; y < held.y0 + held.height; ++y) {
+        const auto row = plane.values.begin() + static_cast<std::ptrdiff_t>(y - w.y0) * w.width + (held.x0 - w.x0);
+        if (std::any_of(row, row + held.width, [](float v) { return v != 0 && !std::isnan(v); })) return true;
+    }
+    return held.width == 0;
+}
+
 }  // namespace
 
 void check_depth_options(const DepthOptions& options) {
@@ -69,7 +79,7 @@ DepthBuffer depth_from_picture(const Picture& picture, const std::filesystem::pa
             fmt::format("'{}': channel '{}' holds integers, which are no metres; say what they mean with "
                         "--depth-range NEAR,FAR",
                         file.string(), plane.channel));
-    if (std::all_of(plane.values.begin(), plane.values.end(), [](float v) { return v == 0 || std::isnan(v); }))
+    if (!holds_depth(plane))
         throw FrameError(fmt::format(
             "'{}': channel '{}' holds no depth, only zeros{}", file.string(), plane.channel,
             std::any_of(plane.values.begin(), plane.values.end(), [](float v) { return std::isnan(v); }) ? " and NaN"

@@ -131,7 +131,7 @@ Picture read(const fs::path& path, Wanted wanted) {
         for (const char* level : {"openexr:levelmode", "openexr:roundingmode"}) part.spec.erase_attribute(level);
         if (part.spec.get_string_attribute("textureformat") == "Plain Texture")
             part.spec.erase_attribute("textureformat");
-        part.transfer = transfer_of(part.spec);
+        part.transfer = transfer_of(part.spec, picture.format);
         part.premultiplied = part.spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
         classify_channels(part, picture.format);
         if (wanted == Wanted::Ends && !marked && !ends_are_readable(*input, index))

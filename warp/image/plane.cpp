@@ -123,12 +123,16 @@ Plane take_plane(const Picture& picture, const std::filesystem::path& file, std:
     }
 
     const std::vector<float> values = decode(*place);
-    Plane plane{data, std::vector<float>(data.area(), outside), std::string(part.spec.channel_name(place->channel)),
-                !part.spec.channelformat(place->channel).is_floating_point()};
+    Plane plane{data,
+                std::vector<float>(data.area(), outside),
+                std::string(part.spec.channel_name(place->channel)),
+                !part.spec.channelformat(place->channel).is_floating_point(),
+                {}};
     const int x_first = std::max(data.x0, own.x0 - dx),
               x_last = std::min(data.x0 + data.width, own.x0 + own.width - dx);
     const int y_first = std::max(data.y0, own.y0 - dy),
               y_last = std::min(data.y0 + data.height, own.y0 + own.height - dy);
+    if (x_first < x_last && y_first < y_last) plane.held = {x_first, y_first, x_last - x_first, y_last - y_first};
     for (int y = y_first; y < y_last && x_first < x_last; ++y) {
         const auto from = static_cast<std::ptrdiff_t>(y + dy - own.y0) * own.width + (x_first + dx - own.x0);
         const auto to = static_cast<std::ptrdiff_t>(y - data.y0) * data.width + (x_first - data.x0);

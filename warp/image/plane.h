@@ -18,6 +18,7 @@ struct Plane {
     std::vector<float> values;  ///< window.area()
     std::string channel;        ///< the name found
     bool integer = false;       ///< the file stores integers
+    PixelWindow held;           ///< the part of `window` that the file has pixels for
 };
 
 /// What the user should know of a file that is read all the same, to be told once a run for each `about`.
