@@ -55,7 +55,7 @@ void explain(const Renderer& renderer, const Scene& scene, const RenderSettings&
     limits.seconds = kExplainedSeconds;
     limits.samples = kExplainedSamples;
     const Probe p = renderer.probe(frames.front(), limits);
-    const int budget = settings.rays.budget();
+    const int budget = settings.rays.step_budget;
     if (!settings.straight) {
         const Figures f = figures(p.pixels);
         fmt::print("rays: {}, tolerance {:g} px; {:.3g} steps each\n", name_of(settings.rays.integrator),

@@ -37,7 +37,7 @@ int run(const PathOptions& o) {
     trace.pixel = 1;
     trace.tolerance_px = o.tolerance;
     trace.u_end = o.length;
-    trace.step_budget = o.rays.step_budget.value_or(kLongStepBudget);
+    trace.step_budget = o.rays.step_budget;
     std::optional<Geometry> geometry;
     if (!scene.objects.empty()) geometry.emplace(scene, o.origin);
     const FieldInstant field = air.at(o.frame.value_or(scene.time.first_frame));

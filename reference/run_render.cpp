@@ -57,7 +57,7 @@ void warn(const RenderOptions& o, int frame, const Renderer& renderer, const Pro
     const std::size_t unfinished = probe.pixels.trapped();
     if (unfinished < kManyUnfinished * static_cast<double>(probe.pixels.width)) return;
     const double seconds = probe.time(static_cast<double>(renderer.width()) * renderer.height(), o.render.samples,
-                                      o.render.rays.budget())[1];
+                                      o.render.rays.step_budget)[1];
     fmt::print(stderr,
                "frame {}: warning: {} of {} rays tried did not end within {} steps: where they are trapped or curl up "
                "the frame takes up to {:.2g} {}; weaker media, fewer --samples or a smaller --step-budget shorten it\n",

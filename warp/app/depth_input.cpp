@@ -82,7 +82,8 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
     }
     const std::optional<double> range_far =
         a.range ? std::optional(std::max((*a.range)[0], (*a.range)[1])) : std::nullopt;
-    far_is_default_ = !a.far && !range_far && !plate.far;
+    far_is_stated_ = a.far || range_far;
+    far_in_scene_ = plate.far.has_value();
     if (a.far)
         far_ = *a.far;
     else if (constant_)
@@ -170,12 +171,12 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
             z = std::max(std::min(z, far), std::min(kNearestDepth, far));
         }
     // in inverse depth, whatever is far is about as good as background
-    if (beyond > 0 && far_is_default_ && options_.type != DepthType::Inverse)
+    if (beyond > 0 && !far_is_stated_ && options_.type != DepthType::Inverse)
         remarks.push_back(
-            {"depth_far",
-             fmt::format("'{}': {} of {} pixels are beyond the default --far {:g} m and move as if at "
-                         "it; say with --far how far the background is",
-                         (inside_input_ ? input_file : files_->at(frame)).string(), beyond, data.area(), far_)});
+            {"depth_far", fmt::format("'{}': {} of {} pixels are beyond {} {:g} m and move as if at "
+                                      "it; say with --far how far the background is",
+                                      (inside_input_ ? input_file : files_->at(frame)).string(), beyond, data.area(),
+                                      far_in_scene_ ? "the scene's plate.far =" : "the default --far", far_)});
     return {seen_from(data, display), std::move(buffer.metres)};
 }
 

@@ -63,7 +63,7 @@ class DepthInput {
 
     DepthOptions options_;
     double far_;
-    bool far_is_default_;
+    bool far_is_stated_, far_in_scene_;
     std::optional<double> constant_;
     std::optional<FilePattern> files_;
     std::optional<Ground> ground_;
