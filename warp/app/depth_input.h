@@ -46,7 +46,7 @@ class DepthInput {
 
     /// Axial depth on `data`, limited to far(), as the camera sees it (seen_from). `input`: the frame's picture, where
     /// the map is a channel of it (or null). Remarks, beside those of the map: pixels in metres beyond a far() that
-    /// nobody stated; ground that is nowhere seen.
+    /// no option stated; ground that is nowhere seen.
     DepthPlane plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
                      const PixelWindow& display, const Camera& camera, std::vector<Remark>& remarks) const;
 

@@ -369,43 +369,59 @@ double MediaLayers::expected_variance(const MediumLayer& layer, double D) const 
         const auto x1 = lattice->displacement_variance(rays.axis, D, rays.aperture);
         return strength2 * 0.5 * (1 + aspect2) * (x1[0] + x1[1]) * pixels * pixels;
     }
-    return sampled_variance(layer, D, kRmsInstants).shift;
+    return sampled_variance(layer, D).shift;
 }
+
+namespace {
+
+/// d of a pixel for an object at D, and how it changes to the next one, to the right or below.
+struct PixelPair {
+    PixelWindow window;
+
+    PixelPair(int x, int y, bool across) : window{x, y, across ? 2 : 1, across ? 1 : 2} {}
+    struct Shifts {
+        Shift d;
+        double slope;
+    };
+    Shifts shifts(const std::vector<Band>& bands, double D) const {
+        BandRows row;
+        row.start(bands, window.y0);
+        const Shift d = row.at(window.x0, D);
+        if (window.height == 2) row.start(bands, window.y0 + 1);
+        const Shift next = row.at(window.x0 + window.width - 1, D);
+        return {d, window.width == 2 ? double{next.x} - d.x : double{next.y} - d.y};
+    }
+};
+
+}  // namespace
 
 /// Over rays at random and their neighbours one pixel to the right or below, by turns; of blobs, which are dear to
 /// place, at a few instants only, the first of them t = 0: a shot begins there, and finds its wind made.
-MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& layer, double D, int instants) const {
+MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& layer, double D) const {
     const RandomStream stream(1, "expected rms");
     const auto draw = [&](int i, int c) { return stream.uniform(static_cast<std::uint64_t>(4 * i + c)); };
     const bool blobs = std::holds_alternative<BlobCloud>(layer.field);
     const double steps = blobs ? 1 : D * glm::length(reference_.forward / layer.cell);
-    const int most = blobs ? kRmsRays * instants / kRmsInstants : kRmsRays;
-    const int rays = std::clamp(static_cast<int>(std::min(kRmsSteps / steps, 1e6)), kFewestRmsRays, most);
+    const int rays = std::clamp(static_cast<int>(std::min(kRmsSteps / steps, 1e6)), kFewestRmsRays, kRmsRays);
     std::optional<LayerInstant> instant;
     SampledVariance sum;
     for (int i = 0; i < rays; ++i) {
         check_cancelled(settings_.cancelled);
         const int x = static_cast<int>(draw(i, 0) * settings_.width),
                   y = static_cast<int>(draw(i, 1) * settings_.height);
-        if (!blobs || i % (rays / instants) == 0)
+        if (!blobs || i % (rays / kRmsInstants) == 0)
             instant = this->instant(layer, reference_, i == 0 ? 0 : 1e3 * draw(i, 2), D, D, 1);
-        const bool across = i % 2 == 0;
-        const PixelWindow pair{x, y, across ? 2 : 1, across ? 1 : 2};
+        const PixelPair pair(x, y, i % 2 == 0);
         std::vector<Band> bands;
         if (blobs) {
-            bands.push_back(std::get<BlobBends>(*instant).every_pixel(pair, D));
+            bands.push_back(std::get<BlobBends>(*instant).every_pixel(pair.window, D));
         } else {
             bands = blank_bands(*instant, reference_, D, D);
             bands.front().spacing = 1;
-            bands.front().cover(pair);
+            bands.front().cover(pair.window);
             std::get<FirstOrderInstant>(*instant).fill(bands.front(), reference_);
         }
-        BandRows row;
-        row.start(bands, y);
-        const Shift d = row.at(x, D);
-        if (!across) row.start(bands, y + 1);
-        const Shift next = row.at(across ? x + 1 : x, D);
-        const double slope = across ? double{next.x} - d.x : double{next.y} - d.y;
+        const auto [d, slope] = pair.shifts(bands, D);
         sum.shift += (double{d.x} * d.x + double{d.y} * d.y) / rays;
         sum.slope += slope * slope / rays;
     }
@@ -429,15 +445,8 @@ double MediaLayers::blob_focusing(const MediumLayer& layer, double D) const {
         const auto aside = [&](std::uint64_t c) { return (3 * stream.uniform(4 * i + c) - 1.5) * blob.sigma; };
         const dvec2 place = reference_.pixel(scale * dvec2(blob.right + aside(1), blob.up + aside(2)));
         if (!(place.x >= 0 && place.x < picture.width && place.y >= 0 && place.y < picture.height)) continue;
-        const auto x = static_cast<int>(place.x), y = static_cast<int>(place.y);
-        const bool across = i % 2 == 0;
-        std::vector<Band> bands{bends.every_pixel({x, y, across ? 2 : 1, across ? 1 : 2}, D)};
-        BandRows row;
-        row.start(bands, y);
-        const Shift d = row.at(x, D);
-        if (!across) row.start(bands, y + 1);
-        const Shift next = row.at(across ? x + 1 : x, D);
-        const double slope = across ? double{next.x} - d.x : double{next.y} - d.y;
+        const PixelPair pair(static_cast<int>(place.x), static_cast<int>(place.y), i % 2 == 0);
+        const double slope = pair.shifts({bends.every_pixel(pair.window, D)}, D).slope;
         sum += slope * slope;
         ++pairs;
     }
@@ -454,7 +463,7 @@ double MediaLayers::focusing_variance(const MediumLayer& layer, double D) const 
         const auto slope = lattice->focusing_variance(rays.axis, D, perspective(), rays.aperture);
         return strength2 * 0.5 * (slope[0] + slope[1]);
     }
-    return sampled_variance(layer, D, 1).slope;
+    return sampled_variance(layer, D).slope;
 }
 
 }  // namespace eikonal

@@ -114,8 +114,7 @@ class MediaLayers {
         double shift = 0;  ///< of |d| [px²]
         double slope = 0;  ///< of ∂d_x/∂x and ∂d_y/∂y, pixel to pixel
     };
-    /// instants: of blobs; other media take a time for each ray.
-    SampledVariance sampled_variance(const MediumLayer& layer, double D, int instants) const;
+    SampledVariance sampled_variance(const MediumLayer& layer, double D) const;
 
     /// Variance of the slopes where blobs are, at t = 0: within 1.5 σ of the middle of one taken at random.
     double blob_focusing(const MediumLayer& layer, double D) const;
