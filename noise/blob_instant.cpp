@@ -13,7 +13,7 @@
 namespace eikonal {
 namespace {
 
-constexpr std::uint32_t kLeafSize = 4;
+constexpr std::uint32_t kLeafSize = 16;
 /// Halving 2^32 balls goes no deeper, and each level leaves one node to come back to.
 constexpr std::size_t kDeepest = 40;
 
@@ -42,7 +42,7 @@ double way_into_box(const dvec3& x, const dvec3& inverse_d, const dvec3& low, co
 
 }  // namespace
 
-BlobInstant::BlobInstant(std::span<const Blob> blobs, double reach) {
+BlobInstant::BlobInstant(std::span<const Blob> blobs, double reach, double step) : step_(step) {
     balls_.reserve(blobs.size());
     for (const Blob& blob : blobs) {
         if (blob.n == 0) continue;
@@ -169,11 +169,10 @@ IndexJet BlobInstant::jet(const dvec3& x) const {
 }
 
 double BlobInstant::longest_step(const dvec3& x) const {
-    return least(
-        [&](const Node& node) { return distance_to_box(x, node.low, node.high) + kBlobStep * node.least_sigma; },
-        [&](const Ball& ball) {
-            return std::max(0.0, glm::length(x - ball.center) - ball.reach) + kBlobStep * ball.sigma;
-        });
+    return least([&](const Node& node) { return distance_to_box(x, node.low, node.high) + step_ * node.least_sigma; },
+                 [&](const Ball& ball) {
+                     return std::max(0.0, glm::length(x - ball.center) - ball.reach) + step_ * ball.sigma;
+                 });
 }
 
 /// Distance from a blob's centre [σ] beyond which it turns a ray by less: 2√π |n_j| b e^{-b²}, with b <= kBlobReach.

@@ -18,22 +18,23 @@ namespace eikonal {
 
 /// √(-ln kNegligibleIndex)
 inline constexpr double kBlobReach = 6.0697085;
-/// The longest step within a blob [σ].
+/// The longest step within a blob [σ], unless stated.
 inline constexpr double kBlobStep = 0.5;
 /// The longest step within a blob of a method that controls its error [σ].
 inline constexpr double kBlobStride = 1.5;
 
 class BlobInstant {
   public:
-    /// reach: where a blob ends [σ]; less than kBlobReach is quicker, and drops e^{-reach²} of each.
-    explicit BlobInstant(std::span<const Blob> blobs, double reach = kBlobReach);
+    /// reach: where a blob ends [σ]; less than kBlobReach is quicker, and drops e^{-reach²} of each. step: the longest
+    /// within a blob [σ].
+    explicit BlobInstant(std::span<const Blob> blobs, double reach = kBlobReach, double step = kBlobStep);
 
     /// n - n_ambient and its gradient at x.
     IndexSample sample(const dvec3& x) const;
     /// The same with the second derivatives.
     IndexJet jet(const dvec3& x) const;
 
-    /// The longest step from x in any direction that misses no blob: least over all of kBlobStep σ plus the way to it.
+    /// The longest step from x in any direction that misses no blob: least over all of `step` σ plus the way to it.
     /// Infinity without blobs.
     double longest_step(const dvec3& x) const;
     /// The longest step from x along the unit direction d of a method that controls its error and looks at both ends:
@@ -88,7 +89,7 @@ class BlobInstant {
 
     std::vector<Ball> balls_;
     std::vector<Node> nodes_;
-    double lower_ = 0, upper_ = 0, strongest_ = 0;
+    double step_, lower_ = 0, upper_ = 0, strongest_ = 0;
 };
 
 }  // namespace eikonal

@@ -78,6 +78,7 @@ struct NoiseInstant : TurbulenceBounds {
 struct SurfaceInstant {
     const SurfaceLayer* layer;
     double bend;  ///< the layer's largest |F| [1/m]
+    double part;  ///< of the dropoff
 
     IndexSample sample(const dvec3& x) const { return layer->sample(x); }
     IndexJet jet(const dvec3& x) const { return layer->jet(x); }
@@ -85,9 +86,9 @@ struct SurfaceInstant {
     /// does so by at most climb s + bend s²/2.
     double longest_step(const dvec3& x, const dvec3& d) const {
         const double h = layer->height(x), within = std::clamp(h, 0.0, layer->top());
-        const double part = kPartOfDropoff * (layer->dropoff() + std::max(0.0, within - layer->knee()));
+        const double change = part * (layer->dropoff() + std::max(0.0, within - layer->knee()));
         const double climb = std::abs(layer->climb(d));
-        return std::abs(h - within) + 2 * part / (climb + std::sqrt(climb * climb + 2 * bend * part));
+        return std::abs(h - within) + 2 * change / (climb + std::sqrt(climb * climb + 2 * bend * change));
     }
     double clear_way(const dvec3& x, const dvec3& d) const {
         return way_into_layer(layer->height(x), layer->climb(d), 0, layer->top());
@@ -214,17 +215,18 @@ struct FieldInstant::State {
         } else if (auto* thin = std::get_if<ScreensPart>(&part.medium)) {
             screens.emplace_back(*thin->field, std::move(thin->screens), thin->frame, thin->falloff,
                                  weight * laws.strength());
-        } else if (const auto* surface = std::get_if<const SurfaceLayer*>(&part.medium)) {
-            const double n =
-                1 + laws.ambient + std::max(0.0, laws.exaggeration * weight * (*surface)->above_ambient(0));
-            media.push_back(
-                {SurfaceInstant{*surface, std::abs(weight * laws.strength()) * (*surface)->largest_slope() * n},
-                 weight});
+        } else if (const auto* surface = std::get_if<SurfacePart>(&part.medium)) {
+            const SurfaceLayer& layer = *surface->layer;
+            const double n = 1 + laws.ambient + std::max(0.0, laws.exaggeration * weight * layer.above_ambient(0));
+            media.push_back({SurfaceInstant{&layer, std::abs(weight * laws.strength()) * layer.largest_slope() * n,
+                                            kPartOfDropoff * surface->step},
+                             weight});
         } else {
-            const auto& [blobs, reach] = std::get<BlobsPart>(part.medium);
+            const auto& [blobs, reach, step] = std::get<BlobsPart>(part.medium);
             const double strength = weight * laws.strength();
             const double n = laws.equation == RayEquation::Paper ? 1 : 1 + laws.ambient;
-            media.push_back({BlobsInstant{BlobInstant(blobs, reach), strength * n, std::abs(strength)}, weight});
+            media.push_back(
+                {BlobsInstant{BlobInstant(blobs, reach, kBlobStep * step), strength * n, std::abs(strength)}, weight});
         }
     }
 
@@ -475,7 +477,7 @@ FieldInstant Field::at(double t) const {
         else if (const auto* screens = std::get_if<ScreenMedium>(&medium))
             instant->add({ScreensPart{&screens->field, screens->field.at(t), *state_->frame, screens->falloff}});
         else if (const auto* surface = std::get_if<SurfaceLayer>(&medium))
-            instant->add({surface});
+            instant->add({SurfacePart{surface}});
         else if (const auto* cloud = std::get_if<BlobCloud>(&medium))
             instant->add({BlobsPart{cloud->at(t)}});
         else

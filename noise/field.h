@@ -67,12 +67,17 @@ struct ScreensPart {
     ScreenFrame frame;
     std::optional<Falloff> falloff;
 };
+struct SurfacePart {
+    const SurfaceLayer* layer;
+    double step = 1;  ///< multiplies the longest steps over it, the smaller the more exact
+};
 struct BlobsPart {
     std::vector<Blob> blobs;
     double reach = kBlobReach;  ///< where they end [σ]
+    double step = 1;            ///< multiplies the longest steps among them
 };
 struct FieldPart {
-    std::variant<LatticePart, NoisePart, ScreensPart, const SurfaceLayer*, BlobsPart> medium;
+    std::variant<LatticePart, NoisePart, ScreensPart, SurfacePart, BlobsPart> medium;
     double weight = 1;  ///< multiplies n - n_ambient, beside the exaggeration
 };
 

@@ -90,15 +90,15 @@ BentHit trace_layers(const FieldInstant& field, const Geometry* geometry, const 
         return result;
     }
     while (true) {
-        if (++result.steps > settings.step_budget) {
-            result.end = BentHit::End::Trapped;
+        if (++result.steps > settings.most_steps()) {
+            result.end = BentHit::End::Unfinished;
             break;
         }
         RayState& ray = result.at;
         const double way = slices.way(ray.x, ray.p, number), remaining = remaining_way(settings, ray, result.length);
         const Step step = straight_step(ray, std::min(way, remaining));
         if (recorder) recorder(step);
-        if (const auto met = search.add(step, step.length(), kink)) return end_at(result, *met);
+        if (const auto met = search.add(step, step.length(), 0, kink)) return end_at(result, *met);
         ray = step.to();
         result.length += std::min(way, remaining);
         if (way >= remaining) break;
@@ -117,7 +117,7 @@ BentHit trace_layers(const FieldInstant& field, const Geometry* geometry, const 
         kink = glm::length(ray.p - before) / speed;
     }
     if (const auto met = search.finish()) return end_at(result, *met);
-    result.steps = std::min(result.steps, settings.step_budget);
+    result.steps = std::min(result.steps, settings.most_steps());
     return result;
 }
 

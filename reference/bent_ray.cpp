@@ -43,7 +43,9 @@ class Tracer {
           tolerance_(std::max(settings.tolerance_px * settings.pixel, kFinestTolerance)),
           bundle_(bundle),
           recorder_(recorder),
+          geometry_(geometry),
           search_(geometry, chord_deviation(settings), settings.distance) {
+        if (bundle) bundles_.emplace();
         if (settings.lone && settings.integrator == Integrator::Adaptive) lone_ = settings.lone.get();
     }
 
@@ -58,15 +60,16 @@ class Tracer {
     double error(const Step& step, double speed) const;
     double same_place() const;
     double clear_way() const;
+    bool trapped();
+    bool hardly_moves();
     double nudge(double way);
     void enter(double reach, const dvec3& before);
     void finish(const SurfaceSearch::Met& met);
 
     /// What was known at the start of one of the last steps, in case a surface is met on it.
     struct Mark {
-        double u = -1, length = 0, error = 0;
-        int steps = 0;
-        Bundle bundle;
+        double u, length, error;
+        int steps;
     };
 
     const FieldInstant& field_;
@@ -77,6 +80,7 @@ class Tracer {
     const LoneSurface* lone_ = nullptr;
     Bundle* bundle_;
     const StepRecorder& recorder_;
+    const Geometry* geometry_;
     SurfaceSearch search_;
     RayState state_;
     dvec3 force_{0};
@@ -84,8 +88,15 @@ class Tracer {
     double launch_speed_ = 1;
     double nudge_ = 0;  ///< of the last step, if that only went over an edge [m]
     double error_ = 0;  ///< [rad or m]
+    /// Turned since the place that the ray has got ahead from, and where on it that was.
+    double turned_ = 0, turned_from_ = 0;
+    dvec3 turned_at_{0};
+    /// Where its pace was last looked at.
+    int paced_steps_ = 0;
+    double paced_length_ = 0;
     BentHit result_;
-    std::array<Mark, SurfaceSearch::kMostPieces> marks_;
+    std::array<Mark, SurfaceSearch::kMostPieces> marks_;                     ///< as many as were accepted are there
+    std::optional<std::array<Bundle, SurfaceSearch::kMostPieces>> bundles_;  ///< beside them
     std::size_t accepted_ = 0;
 };
 
@@ -113,22 +124,45 @@ double Tracer::clear_way() const {
     return may_be_clear(force_) ? field_.clear_way(state_.x, glm::normalize(state_.p)) : 0;
 }
 
+/// Whether it takes many times the budget to come to anything.
+bool Tracer::hardly_moves() {
+    const int steps = result_.steps - paced_steps_;
+    if (steps < kPaceSteps) return false;
+    const double pace = (result_.length - paced_length_) / steps;
+    paced_steps_ = result_.steps;
+    paced_length_ = result_.length;
+    const double remaining =
+        std::min(settings_.far - result_.length, (settings_.u_end - state_.u) * glm::length(state_.p));
+    return kPaceShare * pace * settings_.step_budget <
+           (geometry_ ? std::min(remaining, geometry_->clearance(state_.x)) : remaining);
+}
+
+/// Whether the ray gets nowhere.
+bool Tracer::trapped() {
+    if (!settings_.end_trapped) return false;
+    if (hardly_moves()) return true;
+    if (!(turned_ > kTrapTurn)) return false;
+    if (glm::length(state_.x - turned_at_) < kTrapAdvance * (result_.length - turned_from_)) return true;
+    turned_ = 0;
+    turned_from_ = result_.length;
+    turned_at_ = state_.x;
+    return false;
+}
+
 /// Takes a step into the ray. True if that ends it at a surface.
 bool Tracer::accept(const Step& step) {
-    Mark& mark = marks_[accepted_++ % marks_.size()];
-    mark.u = step.from.u;
-    mark.length = result_.length;
-    mark.error = error_;
-    mark.steps = result_.steps;
+    const std::size_t slot = accepted_++ % marks_.size();
+    marks_[slot] = {step.from.u, result_.length, error_, result_.steps};
     if (bundle_) {
-        mark.bundle = *bundle_;
+        (*bundles_)[slot] = *bundle_;
         advance(field_, step, 1, *bundle_);
     }
     if (recorder_) recorder_(step);
-    const double length = step.length();
+    const double length = step.length(), bend = step.bend();
     result_.length += length;
+    turned_ += bend;
     state_ = step.to();
-    if (const auto met = search_.add(step, length)) {
+    if (const auto met = search_.add(step, length, bend)) {
         finish(*met);
         return true;
     }
@@ -136,13 +170,14 @@ bool Tracer::accept(const Step& step) {
 }
 
 void Tracer::finish(const SurfaceSearch::Met& met) {
-    for (const Mark& mark : marks_) {
+    for (std::size_t slot = 0; slot < std::min(accepted_, marks_.size()); ++slot) {
+        const Mark& mark = marks_[slot];
         if (mark.u != met.step.from.u) continue;
         result_.length = mark.length + met.step.length(met.theta);
         error_ = mark.error;
         result_.steps = mark.steps;
         if (bundle_) {
-            *bundle_ = mark.bundle;
+            *bundle_ = (*bundles_)[slot];
             advance(field_, met.step, met.theta, *bundle_);
         }
     }
@@ -209,7 +244,7 @@ std::optional<BentHit::End> Tracer::go_bent() {
     double h = length / speed, off = 0;
     Step step;
     while (true) {
-        if (++result_.steps > settings_.step_budget) return End::Trapped;
+        if (++result_.steps > settings_.most_steps()) return End::Unfinished;
         step = bent_step(settings_.integrator, field_, state_, force_, h);
         off = error(step, speed);
         if (!adaptive) break;
@@ -243,6 +278,7 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
         return result_;
     }
     state_.p = launch_speed_ * direction;
+    turned_at_ = origin;
     longest_ = std::min(settings_.far, settings_.u_end * launch_speed_);
     quiet_turn_ = tolerance_ / kQuietShare / (settings_.perspective ? 1 : std::min(longest_, settings_.sight));
     if (bundle_ || !(clear_way() > 0)) force_ = field_.force(state_.x, state_.p);
@@ -252,7 +288,9 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
         const double place = same_place();
         if (settings_.far - result_.length <= place || settings_.u_end - state_.u <= place) {
             end = End::Escaped;
-        } else if (result_.steps >= settings_.step_budget) {
+        } else if (result_.steps >= settings_.most_steps()) {
+            end = End::Unfinished;
+        } else if (trapped()) {
             end = End::Trapped;
         } else {
             if (const double way = clear_way(); way > 0) {
@@ -265,7 +303,7 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
     result_.end = *end;
     if (*end != End::Surface)
         if (const auto met = search_.finish()) finish(*met);
-    result_.steps = std::min(result_.steps, settings_.step_budget);
+    result_.steps = std::min(result_.steps, settings_.most_steps());
     result_.error_px = std::min(error_ / settings_.pixel, std::numeric_limits<double>::max());
     result_.at = state_;
     return result_;

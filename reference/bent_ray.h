@@ -13,12 +13,12 @@
 /// feature, pessimistic (that of order 4) where they are many, and knows nothing of chords and of a field that spreads
 /// rays apart. Against 1e-6 pixels the displacement's error stays below the tolerance (README, How fast).
 ///
-/// Surfaces: surface_search.h; chords deviate from the curve by less than a quarter of the tolerance for a steady
-/// bend (half of it for any).
+/// Surfaces: surface_search.h; chords deviate from the curve by less than half of the tolerance.
 ///
 /// Never hangs, and nothing that is not finite leaves: see BentHit::End.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -41,6 +41,11 @@ inline constexpr double kStepShare = 32, kStepShareOverSurface = 5;
 inline constexpr double kQuietShare = 100;
 /// The finest tolerance, tolerance_px * pixel, that is of use: tighter ones count as this [rad or m].
 inline constexpr double kFinestTolerance = 1e-13;
+/// A ray is trapped if it has turned through this angle [rad], every bend counted, on a way whose ends are closer to
+/// each other than this part of its length: what gets anywhere turns far less, or gets ahead. So is one that at the
+/// pace of its last kPaceSteps steps would come to no object, nor to its own end, with kPaceShare budgets.
+inline constexpr double kTrapTurn = 8 * 3.141592653589793, kTrapAdvance = 0.25;
+inline constexpr int kPaceSteps = 1000, kPaceShare = 10;
 /// What adaptive reaches at its finest in the closed forms of PHYSICS 8 [m, and of p].
 inline constexpr double kClosedFormError = 1e-9;
 
@@ -61,7 +66,11 @@ struct TraceSettings {
     /// slice; 0: kSlicesPerDropoff in a dropoff.
     double step = 0;
     int step_budget = 100000;  ///< attempts of steps > 0
-    double far = 1e6;          ///< a ray that met nothing on this length of path ends [m] > 0
+    /// For rays that are only tried: what ends them as the budget does, if that is less.
+    int tried_steps = std::numeric_limits<int>::max();
+    /// Whether a trapped ray ends as soon as it is known to be (kTrapTurn), not only by its budget.
+    bool end_trapped = false;
+    double far = 1e6;  ///< a ray that met nothing on this length of path ends [m] > 0
     /// Length of path by which an error of direction displaces an orthographic ray, at most: that to the farthest thing
     /// in sight [m] > 0.
     double sight = std::numeric_limits<double>::infinity();
@@ -79,6 +88,7 @@ struct TraceSettings {
     void start_at(const FieldInstant& field, const dvec3& place) {
         origin = {place, field.speed(place), lone ? lone->at(place) : LoneSurface::AtHeight{}};
     }
+    int most_steps() const { return std::min(step_budget, tried_steps); }
     double launch_speed(const FieldInstant& field, const dvec3& place) const {
         return origin && origin->place == place ? origin->speed : field.speed(place);
     }
@@ -86,10 +96,11 @@ struct TraceSettings {
 
 struct BentHit {
     enum class End {
-        Surface,  ///< met `surface`
-        Escaped,  ///< went on for `far` metres, or to u_end: `at.p` tells which background it sees
-        Trapped,  ///< the step budget ended it
-        NoIndex   ///< came to where n <= 0
+        Surface,     ///< met `surface`
+        Escaped,     ///< went on for `far` metres, or to u_end: `at.p` tells which background it sees
+        Trapped,     ///< goes round and round or hardly on (kTrapTurn), or bends by more than numbers hold
+        Unfinished,  ///< its step budget ended it
+        NoIndex      ///< came to where n <= 0
     };
     End end = End::Escaped;
     bool hit = false;  ///< end == Surface
@@ -99,6 +110,8 @@ struct BentHit {
     int steps = 0;        ///< attempted
     double error_px = 0;  ///< estimate, see above [pixels]
 
+    /// Whether it came to an end where there is something to see.
+    bool ended() const { return end == End::Surface || end == End::Escaped; }
     /// Ends the ray on a surface.
     void meet(const Hit& there) {
         end = End::Surface;

@@ -46,6 +46,7 @@ DisplacerSettings displacer_settings(const Scene& scene, std::optional<Model> mo
     settings.height = height;
     settings.fps = scene.time.fps.value_or(kDefaultFps);
     settings.far = scene.plate.far.value_or(kDefaultFar);
+    settings.deepest = kInfiniteDepth;
     settings.model = model;
     settings.sample_errors = true;
     settings.cancelled = interrupted;
@@ -55,7 +56,7 @@ DisplacerSettings displacer_settings(const Scene& scene, std::optional<Model> mo
 /// Depth as the warp takes it from the plate's channel Z.
 DepthPlane depth_plane(const RenderedFrame& plate, const PixelWindow& window, double far) {
     std::vector<float> metres = plate.depth;
-    for (float& z : metres) z = std::max(std::min(z, static_cast<float>(far)), kNearestDepth);
+    for (float& z : metres) z = z < kInfiniteDepth ? std::max(z, kNearestDepth) : static_cast<float>(far);
     return {window, std::move(metres)};
 }
 
@@ -240,7 +241,7 @@ struct Comparer::Shot {
     std::vector<Frame> frames;  ///< at most two: the one before, the one added last
     std::vector<int> numbers;
     std::vector<double> tracer_seconds, picture_seconds;
-    double pixels = 0, edges = 0, answers = 0, squares = 0, largest = 0, estimated = 0;
+    double pixels = 0, edges = 0, background = 0, answers = 0, squares = 0, largest = 0, estimated = 0;
     double folded = 0, trapped = 0, without_index = 0;
 
     Shot(const Scene& s, const CompareSettings& set)
@@ -257,6 +258,9 @@ struct Comparer::Shot {
         numbers.push_back(frames.back().number);
         pixels += static_cast<double>(truth.id.size());
         edges += static_cast<double>(std::count(edge.begin(), edge.end(), 1));
+        const std::vector<float>& depth = frames.back().plate.depth;
+        background += static_cast<double>(
+            std::count_if(depth.begin(), depth.end(), [](float z) { return !(z < kInfiniteDepth); }));
         folded += static_cast<double>(truth.folded());
         trapped += static_cast<double>(truth.trapped());
         without_index += static_cast<double>(truth.without_index());
@@ -336,6 +340,7 @@ Comparison Comparer::result() const {
     c.largest = s.largest;
     c.far = s.far;
     c.silhouettes = s.edges / s.pixels;
+    c.background = s.background / s.pixels;
     if (follows_bundles(s.settings.rays.integrator)) c.folded = s.folded / s.pixels;
     c.trapped = s.trapped / s.pixels;
     c.without_index = s.without_index / s.pixels;

@@ -83,6 +83,7 @@ struct Comparison {
     double focusing_variance = 0;  ///< expected at the far distance (Displacer), strength before any falloff
     double far = 0;                ///< [m]
     double silhouettes = 0;        ///< part of the pixels
+    double background = 0;         ///< part of the plate's pixels, `far` to the warp and infinitely far to the tracer
     std::optional<double> folded;  ///< part of the pixels with negative magnification; unknown for some integrators
     double trapped = 0, without_index = 0;
     std::vector<ModelResult> models;

@@ -134,6 +134,9 @@ std::vector<Fact> facts(const Comparison& c) {
                                c.tolerance, readable(c.tracer_error))},
         {"tracer's time", fmt::format("{} ms a frame for the picture, {} ms for one ray a pixel without colour",
                                       readable(1e3 * c.picture_seconds), readable(1e3 * c.tracer_seconds))}};
+    if (c.background > 0)
+        list.push_back({"background", fmt::format("{} of the pixels; at {} m to the warp, infinitely far to the tracer",
+                                                  percent(c.background), readable(c.far))});
     if (c.without_index > 0) list.push_back({"rays to n <= 0", percent(c.without_index)});
     return list;
 }

@@ -10,6 +10,7 @@ namespace eikonal::reference {
 namespace {
 
 struct Figures {
+    std::size_t ended = 0;                 ///< rays; error and displacement are theirs
     double steps = 0, error = 0, rms = 0;  ///< means
     double largest = 0;
 };
@@ -19,19 +20,18 @@ Figures figures(const RenderedFrame& f) {
     for (std::size_t i = 0; i < f.u.size(); ++i) {
         const double d2 = double{f.u[i]} * f.u[i] + double{f.v[i]} * f.v[i];
         r.steps += f.steps[i];
+        if (f.id[i] < 0) continue;
+        ++r.ended;
         r.error += f.error[i];
         r.rms += d2;
         r.largest = std::max(r.largest, std::sqrt(d2));
     }
     r.steps /= f.width;
-    r.error /= f.width;
-    r.rms = std::sqrt(r.rms / f.width);
+    if (r.ended == 0) return r;
+    const auto count = static_cast<double>(r.ended);
+    r.error /= count;
+    r.rms = std::sqrt(r.rms / count);
     return r;
-}
-
-/// "2.5", or "2.5 to 80" where what is known leaves that open.
-std::string between(double low, double high) {
-    return high > 1.01 * low ? fmt::format("{:.3g} to {:.3g}", low, high) : fmt::format("{:.3g}", low);
 }
 
 }  // namespace
@@ -54,34 +54,35 @@ void explain(const Renderer& renderer, const Scene& scene, const RenderSettings&
     limits.most = static_cast<int>(std::min<double>(kMostExplained, std::max<double>(area, limits.first)));
     limits.seconds = kExplainedSeconds;
     limits.samples = kExplainedSamples;
+    limits.steps = kExplainedSteps;
     const Probe p = renderer.probe(frames.front(), limits);
-    const int budget = settings.rays.step_budget;
     if (!settings.straight) {
         const Figures f = figures(p.pixels);
         fmt::print("rays: {}, tolerance {:g} px; {:.3g} steps each\n", name_of(settings.rays.integrator),
                    settings.rays.tolerance_px, f.steps);
-        if (const std::size_t n = p.pixels.trapped())
+        if (const std::size_t n = p.pixels.trapped() - p.pixels.unfinished())
+            fmt::print("rays: {} of {} tried go round and round or hardly on: they are ended, their pixels black\n", n,
+                       p.pixels.width);
+        if (const std::size_t n = p.pixels.unfinished())
             fmt::print(
-                "rays: {} of {} tried did not end within {} steps: they are trapped, curl up, or have a long "
-                "way to go; --step-budget ends them at {}\n",
-                n, p.pixels.width, p.step_limit, budget);
+                "rays: {} of {} tried have a way to go that takes more than {} steps, {} of them more than the "
+                "{} of --step-budget\n",
+                n, p.pixels.width, p.step_limit, p.beyond, settings.rays.step_budget);
         if (const std::size_t n = p.pixels.without_index())
             fmt::print("rays: {} of {} tried came to where n <= 0\n", n, p.pixels.width);
-        fmt::print("displacement: {:.3g} px rms, {:.3g} px at most, in {} pixels of frame {}\n", f.rms, f.largest,
-                   p.pixels.width, frames.front());
-        fmt::print("error: {:.2g} px on average, as the rays estimate it\n", f.error);
+        if (f.ended == 0) {
+            fmt::print("displacement: unknown, none of the {} rays tried in frame {} came to an end\n", p.pixels.width,
+                       frames.front());
+        } else {
+            fmt::print("displacement: {:.3g} px rms, {:.3g} px at most, in {} pixels of frame {}\n", f.rms, f.largest,
+                       f.ended, frames.front());
+            fmt::print("error: {:.2g} px on average, as the rays estimate it\n", f.error);
+        }
     }
-    const auto frame_seconds = [&](double pixels) {
-        std::array<double, 2> time = p.time(pixels, settings.samples, budget);
-        for (double& t : time) t += p.setup;
-        return time;
-    };
-    const auto [low, high] = frame_seconds(area);
-    const auto [least, most] = p.time(1, settings.samples, budget);
-    const auto count = static_cast<double>(frames.size());
-    fmt::print("time: about {} s a frame on {} thread{} ({} µs of processor time a pixel), {} s in all{}\n",
-               between(low, high), threads, threads == 1 ? "" : "s",
-               between(1e6 * threads * least, 1e6 * threads * most), between(count * low, count * high),
+    const double seconds = p.setup + p.time(area, settings.samples);
+    fmt::print("time: about {:.3g} s a frame on {} thread{} ({:.3g} µs of processor time a pixel), {:.3g} s in all{}\n",
+               seconds, threads, threads == 1 ? "" : "s", 1e6 * threads * p.time(1, settings.samples),
+               static_cast<double>(frames.size()) * seconds,
                settings.light_rays > 0 ? ", and what --light-rays take" : "");
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

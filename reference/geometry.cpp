@@ -17,7 +17,6 @@
 
 #include "noise/error.h"
 #include "reference/direction.h"
-#include "reference/scene_place.h"
 
 namespace eikonal::reference {
 namespace {
@@ -130,8 +129,7 @@ void Geometry::add_mesh(const Scene& scene, int index) {
         try {
             entry.mesh = read_mesh(file, object.scale, object.center);
         } catch (const UserError& error) {
-            throw UserError(
-                fmt::format("{}: {}", place_of(scene, fmt::format("object.{}.file", index), file), error.what()));
+            throw UserError(fmt::format("object.{}.file: {}", index, error.what()));
         }
     }
     for (const MeshMaterial& m : entry.mesh.materials)
@@ -244,6 +242,17 @@ dvec3 Geometry::leave(const Hit& hit) const {
     return hit.point + (1e-5 + 8 * 6e-8 * std::max(p.x, std::max(p.y, p.z))) * hit.normal;
 }
 
+double Geometry::clearance(const dvec3& point) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Plane& plane : planes_) least = std::min(least, std::abs(glm::dot(point - plane.origin, plane.normal)));
+    if (meshes_.empty() && spheres_.empty()) return least;
+    RTCBounds bounds;
+    rtcGetSceneBounds(scene_.get(), &bounds);
+    const dvec3 low = anchor_ + dvec3(bounds.lower_x, bounds.lower_y, bounds.lower_z);
+    const dvec3 high = anchor_ + dvec3(bounds.upper_x, bounds.upper_y, bounds.upper_z);
+    return std::min(least, glm::length(glm::max(glm::max(low - point, point - high), dvec3(0))));
+}
+
 std::optional<int> Geometry::object_around(dvec3 point) const {
     for (const Sphere& sphere : spheres_)
         if (glm::distance(point, sphere.center) < sphere.radius) return sphere.object;
@@ -259,7 +268,9 @@ std::optional<int> Geometry::object_around(dvec3 point) const {
         for (int i = 0; i < kMostSurfaces; ++i) {
             const auto contact = nearest(point, direction, from, std::numeric_limits<double>::infinity());
             if (!contact) break;
-            if (contact->plane < 0 && contact->geometry < meshes_.size()) ++passed[contact->geometry];
+            if (contact->plane < 0 && contact->geometry < meshes_.size() &&
+                meshes_[contact->geometry].mesh.triangles[contact->primitive].closed)
+                ++passed[contact->geometry];
             from = contact->t + kSameSurface * (1 + contact->t);
         }
         for (std::size_t i = 0; i < passed.size(); ++i) odd[i] += passed[i] % 2;

@@ -9,8 +9,8 @@
 /// spheres, except for segments nearly tangent to them. Which of two triangles a segment through their common edge
 /// meets may depend on the processor, as Embree's own arithmetic does; the point it meets does not.
 ///
-/// Failures: UserError for an empty scene and, naming file, line and key (scene_place.h), for meshes that cannot be
-/// read. Intersecting never fails: a segment that is not finite meets nothing.
+/// Failures: UserError for an empty scene and, naming their key, for meshes that cannot be read. Intersecting never
+/// fails: a segment that is not finite meets nothing.
 #pragma once
 
 #include <memory>
@@ -78,7 +78,10 @@ class Geometry {
     /// Embree's float positions may err there.
     dvec3 leave(const Hit& hit) const;
 
-    /// Object index of a sphere or closed mesh that a point lies within: of a mesh whose surface is passed an odd
+    /// A lower bound of the way from a point to any surface [m]; infinity if there is none.
+    double clearance(const dvec3& point) const;
+
+    /// Object index of a sphere or closed mesh that a point lies within: of a mesh whose closed parts are passed an odd
     /// number of times on all ways out but one of seven. Surfaces within a hundred-thousandth of their distance count
     /// as one.
     std::optional<int> object_around(dvec3 point) const;

@@ -69,7 +69,7 @@ struct Step {
     /// Coefficients of the quintic n·(position(theta) - from.x), from that of theta to that of theta^5.
     std::array<double, 5> along(const dvec3& n) const;
 
-    /// Arc length of all of it, and from its start to part theta, by Simpson's rule [m].
+    /// Arc length of all of it, and from its start to part theta, no less than the chord's [m].
     double length() const;
     double length(double theta) const;
     /// How far its direction turns within it, a bound for steps that resolve F [rad].

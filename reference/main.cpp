@@ -9,6 +9,7 @@
 #include "reference/commands.h"
 #include "warp/image/interrupt.h"
 #include "warp/image/picture.h"
+#include "warp/scene/scene_place.h"
 
 namespace eikonal::reference {
 
@@ -28,7 +29,13 @@ int run_command(const Command& command) {
             const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                                     static_cast<std::size_t>(threads));
             set_image_threads(threads);
-            return run(options);
+            try {
+                return run(options);
+            } catch (const UserError& error) {
+                if constexpr (requires { options.common; })
+                    throw UserError(with_place(error.what(), options.common.scene, options.common.settings));
+                throw;
+            }
         },
         command);
 }

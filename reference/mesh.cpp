@@ -9,7 +9,9 @@
 #include <cmath>
 #include <fstream>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "noise/error.h"
 #include "warp/scene/scene.h"
@@ -20,14 +22,76 @@ namespace {
 /// What lines of numbers begin with, and how many there are at least.
 constexpr std::pair<std::string_view, int> kNumbers[] = {{"v", 3}, {"vn", 3}, {"vt", 1}, {"Kd", 3}, {"Ke", 3}};
 
-/// UserError if a line that should hold numbers does not: tinyobjloader would take what it cannot read for 0. Leaves
-/// the stream at its start.
+/// The indices of faces into v, vt and vn.
+class FaceCheck {
+  public:
+    explicit FaceCheck(const std::filesystem::path& file) : file_(file) {}
+
+    /// Of one line: what it begins with, and of a face the rest.
+    void take(std::string_view kind, std::istream& words, long line) {
+        for (List& list : lists_) list.count += kind == list.name;
+        if (kind != "f") return;
+        for (std::string corner; words >> corner;) {
+            std::size_t from = 0;
+            for (std::size_t k = 0; k < lists_.size() && from <= corner.size(); ++k) {
+                const std::size_t slash = std::min(corner.find('/', from), corner.size());
+                // the second of three may be left out
+                if (const std::string text = corner.substr(from, slash - from);
+                    k != 1 || !text.empty() || slash == corner.size())
+                    note(lists_[k], text, corner, line);
+                from = slash + 1;
+            }
+            if (from <= corner.size()) refuse(corner, line);
+        }
+    }
+
+    /// After the last line: a face may name what comes after it.
+    void finish() const {
+        for (const List& list : lists_)
+            if (list.largest > list.count) refuse_entry(list, list.largest, list.line);
+    }
+
+  private:
+    struct List {
+        const char* name;
+        long count = 0, largest = 0, line = 0;  ///< largest index, and where
+    };
+
+    void note(List& list, const std::string& text, const std::string& corner, long line) {
+        int index = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+        if (error != std::errc() || end != text.data() + text.size() || index == 0) refuse(corner, line);
+        if (index < 0 && -static_cast<long>(index) > list.count) refuse_entry(list, index, line);
+        if (index > list.largest) {
+            list.largest = index;
+            list.line = line;
+        }
+    }
+    [[noreturn]] void refuse(const std::string& corner, long line) const {
+        throw UserError(
+            fmt::format("{}:{}: f: '{}' is no corner: give whole numbers from 1 to 2147483647, or from -1 "
+                        "backwards, as in 3, 3/1, 3//2 or 3/1/2",
+                        file_.string(), line, corner));
+    }
+    [[noreturn]] void refuse_entry(const List& list, long index, long line) const {
+        throw UserError(fmt::format("{}:{}: f: there is no {} {}, the file has {}{}: repair the mesh", file_.string(),
+                                    line, list.name, index, list.count, index < 0 ? " before it" : ""));
+    }
+
+    const std::filesystem::path& file_;
+    std::array<List, 3> lists_{{{"v"}, {"vt"}, {"vn"}}};
+};
+
+/// UserError if a line that should hold numbers or indices does not: tinyobjloader would take what it cannot read for
+/// 0. Leaves the stream at its start.
 void check_numbers(std::istream& stream, const std::filesystem::path& file) {
+    FaceCheck faces(file);
     std::string text;
     for (long line = 1; std::getline(stream, text); ++line) {
         std::istringstream words(text.substr(0, text.find('#')));
         std::string word;
         words >> word;
+        faces.take(word, words, line);
         const auto* const kind = std::find_if(std::begin(kNumbers), std::end(kNumbers),
                                               [&](const auto& entry) { return entry.first == word; });
         if (kind == std::end(kNumbers)) continue;
@@ -44,6 +108,7 @@ void check_numbers(std::istream& stream, const std::filesystem::path& file) {
             throw UserError(fmt::format("{}:{}: {} needs {} numbers and has {}: repair it", file.string(), line,
                                         kind->first, kind->second, count));
     }
+    faces.finish();
     stream.clear();
     stream.seekg(0);
 }
@@ -88,6 +153,43 @@ bool has_area(const Mesh& mesh, const Mesh::Triangle& t) {
     return glm::dot(n, n) > 0;
 }
 
+/// Finds Triangle::closed of all.
+void mark_closed(Mesh& mesh) {
+    using Index = std::uint32_t;
+    const auto place = [&](Index i) {
+        const dvec3& p = mesh.positions[i];
+        return std::array{p.x, p.y, p.z};
+    };
+    std::vector<Index> order(mesh.positions.size()), same(order.size()), part(order.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return place(a) < place(b); });
+    for (std::size_t i = 0; i < order.size(); ++i)
+        same[order[i]] = i > 0 && place(order[i]) == place(order[i - 1]) ? same[order[i - 1]] : order[i];
+    std::iota(part.begin(), part.end(), Index{0});
+    const auto part_of = [&](Index i) {
+        while (part[i] != i) i = part[i] = part[part[i]];
+        return i;
+    };
+    std::vector<std::pair<Index, Index>> edges;
+    edges.reserve(3 * mesh.triangles.size());
+    for (const Mesh::Triangle& t : mesh.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index a = same[t.vertex[k]], b = same[t.vertex[(k + 1) % 3]];
+            if (a == b) continue;
+            edges.emplace_back(std::minmax(a, b));
+            part[part_of(a)] = part_of(b);
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    std::vector<bool> open(part.size(), false);
+    for (auto edge = edges.begin(); edge != edges.end();) {
+        const auto next = std::find_if(edge, edges.end(), [&](const auto& other) { return other != *edge; });
+        if (next - edge != 2) open[part_of(edge->first)] = true;
+        edge = next;
+    }
+    for (Mesh::Triangle& t : mesh.triangles) t.closed = !open[part_of(same[t.vertex[0]])];
+}
+
 }  // namespace
 
 Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset) {
@@ -121,26 +223,22 @@ Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset) {
         if (!m.diffuse_texname.empty()) material.texture = file.parent_path() / m.diffuse_texname;
         mesh.materials.push_back(std::move(material));
     }
-    const auto checked = [&](int index, std::size_t count, int lowest) {
-        if (index < lowest || (index >= 0 && static_cast<std::size_t>(index) >= count))
-            throw UserError(fmt::format("{}: a face refers to entry {} of a list of {}: repair the mesh", file.string(),
-                                        static_cast<long long>(index) + 1, count));
-        return index;
-    };
     for (const tinyobj::shape_t& shape : shapes) {
         const tinyobj::mesh_t& m = shape.mesh;
         for (std::size_t i = 0; 3 * i + 2 < m.indices.size(); ++i) {
             Mesh::Triangle t{};
             for (std::size_t k = 0; k < 3; ++k) {
                 const tinyobj::index_t& corner = m.indices[3 * i + k];
-                t.vertex[k] = static_cast<std::uint32_t>(checked(corner.vertex_index, mesh.positions.size(), 0));
-                t.normal[k] = checked(corner.normal_index, mesh.normals.size(), -1);
-                t.uv[k] = checked(corner.texcoord_index, mesh.uvs.size(), -1);
+                t.vertex[k] = static_cast<std::uint32_t>(corner.vertex_index);
+                t.normal[k] = corner.normal_index;
+                t.uv[k] = corner.texcoord_index;
             }
-            t.material = checked(m.material_ids[i], mesh.materials.size(), -1);
-            if (has_area(mesh, t)) mesh.triangles.push_back(t);
+            t.material = m.material_ids[i];
+            mesh.triangles.push_back(t);
         }
     }
+    mark_closed(mesh);
+    std::erase_if(mesh.triangles, [&](const Mesh::Triangle& t) { return !has_area(mesh, t); });
     if (mesh.triangles.empty())
         throw UserError(fmt::format("{}: the mesh has no triangle with an area: nothing to render", file.string()));
     return mesh;

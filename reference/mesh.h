@@ -4,8 +4,9 @@
 /// triangulated), mtllib, usemtl; of a material Kd, Ke and map_Kd. Everything else is ignored. Colours are linear.
 /// Coordinates are metres after `scale` and `offset`. Triangles without area are left out.
 ///
-/// Failures: UserError naming the file, for a mesh or material library that is missing, unreadable, has no triangles or
-/// indices outside its lists; naming file and line, for a v, vt, vn, Kd or Ke that is no list of finite numbers.
+/// Failures: UserError naming the file, for a mesh or material library that is missing, unreadable or has no triangles;
+/// naming file and line, for a v, vt, vn, Kd or Ke that is no list of finite numbers, and for an f whose indices are no
+/// whole numbers or outside their lists.
 #pragma once
 
 #include <array>
@@ -35,6 +36,9 @@ struct Mesh {
         std::array<std::int32_t, 3> normal;   ///< into normals; -1: none at this corner
         std::array<std::int32_t, 3> uv;       ///< into uvs; -1: none
         std::int32_t material = -1;           ///< into materials; -1: that of the object
+        /// Of a part that encloses space: where corners at the same place count as one, each of its edges belongs to
+        /// two triangles.
+        bool closed = false;
     };
     std::vector<dvec3> positions;  ///< [m], world
     std::vector<dvec3> colors;     ///< per position; 1 where the file has none

@@ -67,7 +67,7 @@ void add_integrator(CLI::App& command, RaySettings& rays) {
         ->type_name("M");
     command
         .add_option("--step-budget", rays.step_budget,
-                    fmt::format("steps after which a trapped ray ends (default: {})", kStepBudget))
+                    fmt::format("steps after which a ray ends (default: {})", kStepBudget))
         ->check(CLI::Range(10, 1000000000))
         ->type_name("N");
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "noise/error.h"
+#include "reference/perturbation.h"
 
 namespace eikonal::reference {
 namespace {
@@ -23,8 +24,11 @@ void write_row(std::ostream& stream, const RayState& at) {
 BentHit write_path(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
                    const TraceSettings& settings, std::ostream& stream, const std::string& name) {
     std::vector<Step> steps;
-    BentHit result =
-        trace(field, geometry, origin, direction, settings, nullptr, [&](const Step& step) { steps.push_back(step); });
+    const auto record = [&](const Step& step) { steps.push_back(step); };
+    const bool perturbed =
+        settings.integrator == Integrator::FirstOrder || settings.integrator == Integrator::SecondOrder;
+    BentHit result = perturbed ? perturbed_curve(field, geometry, origin, direction, settings, record)
+                               : trace(field, geometry, origin, direction, settings, nullptr, record);
     // Steps add up to the length that is asked for but for rounding.
     if (result.end == BentHit::End::Escaped && std::abs(result.at.u - settings.u_end) <= kSameEnd * (1 + result.at.u))
         result.at.u = settings.u_end;

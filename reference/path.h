@@ -1,7 +1,9 @@
 /// One ray written as text, for plots: CSV with the columns u,x,y,z,px,py,pz, p = dx/du, a row a point.
 ///
 /// Rows: the ray's origin, the end of every step, and as many points of the curve between as keep the direction from
-/// turning by more than kPathTurn from row to row. Numbers have the shortest form that reads back as the same double.
+/// turning by more than kPathTurn from row to row. Of first and second order it is the perturbed curve itself
+/// (perturbation.h), which starts at the origin with the straight ray's p as all do. Numbers have the shortest form
+/// that reads back as the same double.
 #pragma once
 
 #include <ostream>

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
+#include <vector>
 
 namespace eikonal::reference {
 namespace {
@@ -20,7 +22,8 @@ struct Perturbed {
     dvec3 x1{0}, dx1{0}, x2{0}, dx2{0};
     double error = 0;  ///< of x1⊥/D by the quadrature [rad]
     int steps = 0;
-    bool no_index = false, trapped = false;
+    double way = 0;  ///< that the quadrature has come [m]
+    bool no_index = false, unfinished = false;
 };
 
 class Quadrature {
@@ -34,8 +37,8 @@ class Quadrature {
           direction_(direction),
           speed_(speed) {}
 
-    /// Over 0 … distance [m].
-    Perturbed over(double distance);
+    /// Over 0 … distance [m], or until `walk`, which is given every step of the perturbed ray, returns true.
+    Perturbed over(double distance, const std::function<bool(const Step&)>& walk = {});
 
   private:
     dvec3 at(double w) const { return origin_ + w * direction_; }
@@ -51,6 +54,8 @@ class Quadrature {
     void straight(double length);
     double off(const ForceJet& from, const ForceJet& middle, const ForceJet& to, double length) const;
     void bent(const ForceJet& from, const ForceJet& middle, const ForceJet& to, double length);
+    dvec3 shift() const { return sum_.x1 + sum_.x2; }
+    dvec3 turn() const { return sum_.dx1 + sum_.dx2; }
 
     const FieldInstant& field_;
     const TraceSettings& settings_;
@@ -58,12 +63,14 @@ class Quadrature {
     dvec3 origin_, direction_;
     double speed_;
     Perturbed sum_;
+    dvec3 force_from_{0}, force_to_{0};  ///< on the perturbed ray, at the ends of the last step
 };
 
 void Quadrature::straight(double length) {
     const double h = length / speed_;
     sum_.x1 += h * sum_.dx1;
     sum_.x2 += h * sum_.dx2;
+    force_from_ = force_to_ = dvec3(0);
 }
 
 /// A part of what the trapezoidal rule is wrong by: enough at the longest steps, too much at shorter ones.
@@ -77,6 +84,8 @@ void Quadrature::bent(const ForceJet& from, const ForceJet& middle, const ForceJ
     sum_.x1 += h * dx1 + h * h / 6 * (Fa + 2.0 * Fm);
     sum_.dx1 += h / 6 * (Fa + 4.0 * Fm + Fb);
     sum_.error += off(from, middle, to, length);
+    force_from_ = Fa;
+    force_to_ = Fb;
     if (!second_) return;
     // The middle, through the parabola that has these three forces.
     const dvec3 x1m = x1 + 0.5 * h * dx1 + h * h / 96 * (7.0 * Fa + 6.0 * Fm - Fb);
@@ -84,6 +93,8 @@ void Quadrature::bent(const ForceJet& from, const ForceJet& middle, const ForceJ
     const dvec3 Ga = further(from, x1, dx1), Gm = further(middle, x1m, dx1m), Gb = further(to, sum_.x1, sum_.dx1);
     sum_.x2 += h * sum_.dx2 + h * h / 6 * (Ga + 2.0 * Gm);
     sum_.dx2 += h / 6 * (Ga + 4.0 * Gm + Gb);
+    force_from_ += Ga;
+    force_to_ += Gb;
 }
 
 /// |p|² = |p0|² + 2 ∫ F·dx holds along the straight ray too: there is an index unless that comes near nothing.
@@ -91,15 +102,31 @@ bool Quadrature::without_index(double w) const {
     return speed_ + 2 * glm::dot(sum_.dx1, direction_) < 0.25 * speed_ && !(field_.speed(at(w)) > 0);
 }
 
-Perturbed Quadrature::over(double distance) {
+Perturbed Quadrature::over(double distance, const std::function<bool(const Step&)>& walk) {
     const double place = 1e-12 * (1 + glm::length(origin_) + std::min(distance, 1e6));
     const double allowed =
         settings_.tolerance_px * settings_.pixel / kStepShare / (settings_.perspective ? 1 : distance);
     double w = 0;
     ForceJet here = sample(0);
+    // Takes a step, and on it goes: true if that was the last.
+    const auto take = [&](double length, bool straight_on, const auto& integrate) {
+        const dvec3 shift_before = shift(), turn_before = turn(), p0 = speed_ * direction_;
+        integrate();
+        Step step;
+        step.from = {at(w) + shift_before, p0 + turn_before, w / speed_};
+        w += length;
+        if (!walk) return false;
+        step.h = length / speed_;
+        step.straight = straight_on;
+        step.shift = step.h * p0 + (shift() - shift_before);
+        step.turn = turn() - turn_before;
+        step.force_from = force_from_;
+        step.force_to = force_to_;
+        return walk(step);
+    };
     while (distance - w > place) {
-        if (++sum_.steps > settings_.step_budget) {
-            sum_.trapped = true;
+        if (++sum_.steps > settings_.most_steps()) {
+            sum_.unfinished = true;
             break;
         }
         if (without_index(w)) {
@@ -116,8 +143,7 @@ Perturbed Quadrature::over(double distance) {
         if (clear > 0 || edge <= place) {
             // On, and beyond what ends there.
             const double way = std::min(std::max(edge, 0.0) + place, distance - w);
-            straight(way);
-            w += way;
+            if (take(way, true, [&] { straight(way); })) break;
             here = sample(w);
             continue;
         }
@@ -129,10 +155,10 @@ Perturbed Quadrature::over(double distance) {
             there = middle;
             middle = sample(w + 0.5 * length);
         }
-        bent(here, middle, there, length);
+        if (take(length, false, [&] { bent(here, middle, there, length); })) break;
         here = there;
-        w += length;
     }
+    sum_.way = w;
     return sum_;
 }
 
@@ -179,10 +205,11 @@ BentHit trace_perturbed(const FieldInstant& field, const Geometry* geometry, con
     if (settings.integrator == Integrator::FirstOrder && settings.step == 0)
         closed = closed_form(field, settings, origin, direction, speed, distance);
     const Perturbed sum = closed ? *closed : Quadrature(field, settings, origin, direction, speed).over(distance);
-    result.steps = std::min(sum.steps, settings.step_budget);
+    result.steps = std::min(sum.steps, settings.most_steps());
     result.error_px = sum.error / settings.pixel * (settings.perspective ? 1 : distance);
-    if (!(speed > 0) || sum.no_index || sum.trapped) {
-        result.end = sum.trapped ? BentHit::End::Trapped : BentHit::End::NoIndex;
+    if (!(speed > 0) || sum.no_index || sum.unfinished) {
+        result.length = sum.way;
+        result.end = sum.unfinished ? BentHit::End::Unfinished : BentHit::End::NoIndex;
         return result;
     }
     const auto across = [&](const dvec3& v) { return v - glm::dot(v, direction) * direction; };
@@ -214,6 +241,44 @@ BentHit trace_perturbed(const FieldInstant& field, const Geometry* geometry, con
     if (recorder) recorder(straight_step(ray, result.length));
     ray.u += result.length / speed;
     ray.x = result.hit ? result.surface.point : ray.x + result.length / speed * ray.p;
+    return result;
+}
+
+BentHit perturbed_curve(const FieldInstant& field, const Geometry* geometry, const dvec3& origin,
+                        const dvec3& direction, const TraceSettings& settings, const StepRecorder& recorder) {
+    BentHit result;
+    const double speed = field.speed(origin);
+    result.at = {origin, speed * direction, 0};
+    if (!(speed > 0)) {
+        result.end = BentHit::End::NoIndex;
+        return result;
+    }
+    SurfaceSearch search(geometry, chord_deviation(settings), settings.distance);
+    std::vector<double> lengths;  // of path before each step
+    std::vector<double> starts;   // u of each step
+    std::optional<SurfaceSearch::Met> met;
+    const auto walk = [&](const Step& step) {
+        if (recorder) recorder(step);
+        const double length = step.length();
+        starts.push_back(step.from.u);
+        lengths.push_back(result.length);
+        result.length += length;
+        result.at = step.to();
+        met = search.add(step, length, step.bend());
+        return met.has_value();
+    };
+    const double distance = std::min(settings.far, settings.u_end * speed);
+    const Perturbed sum = Quadrature(field, settings, origin, direction, speed).over(distance, walk);
+    result.steps = std::min(sum.steps, settings.most_steps());
+    result.error_px = sum.error / settings.pixel * (settings.perspective ? 1 : distance);
+    if (sum.unfinished) result.end = BentHit::End::Unfinished;
+    if (sum.no_index) result.end = BentHit::End::NoIndex;
+    if (!met) met = search.finish();
+    if (!met) return result;
+    const auto step = std::lower_bound(starts.begin(), starts.end(), met->step.from.u) - starts.begin();
+    result.length = lengths[static_cast<std::size_t>(step)] + met->step.length(met->theta);
+    result.at = met->step.at(met->theta);
+    result.meet(met->hit);
     return result;
 }
 

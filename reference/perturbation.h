@@ -7,14 +7,15 @@
 ///     x2(U) = ∫₀^U (U - w) [(x1·∇)F + (x1'·∂/∂p)F] dw                                              *added* the last
 ///     term
 ///
-/// The ray is then redirected, as the paper renders: a straight one from the same origin towards D d + x1⊥(U), or, for
-/// an orthographic camera, a parallel one shifted by x1⊥(U). Second order takes x1⊥ + x2⊥ - x1'⊥ x1∥/|p0|, which is
-/// where the bent ray passes the plane through the straight one's end, across it. Error in the strength of the field:
-/// quadratic, and cubic where what is met faces the ray: the redirected ray arrives along its own straight line, so a
-/// surface that it meets obliquely is missed by the quadratic part in either order. Neither knows rays that turn back:
-/// over a hot road they hold well above the critical angle √(2B) and are worth nothing below it (from 0.2 m over
-/// asphalt of 305 K: 0.2 m off where the ray meets it at 1.2 times that angle, 9 mm at twice, 2 µm at ten times). A ray
-/// that is not bent by what matters (kQuietShare) is not shot again.
+/// where ' is d/du. The perturbed ray itself is x0 + x1 (+ x2), with dx/du = p0 + x1' (+ x2'): perturbed_curve. A
+/// picture takes less of it. The ray is redirected, as the paper renders: a straight one from the same origin towards D
+/// d + x1⊥(U), or, for an orthographic camera, a parallel one shifted by x1⊥(U). Second order takes x1⊥ + x2⊥ - x1'⊥
+/// x1∥/|p0|, which is where the bent ray passes the plane through the straight one's end, across it. Error in the
+/// strength of the field: quadratic, and cubic where what is met faces the ray: the redirected ray arrives along its
+/// own straight line, so a surface that it meets obliquely is missed by the quadratic part in either order. Neither
+/// knows rays that turn back: over a hot road they hold well above the critical angle √(2B) and are worth nothing below
+/// it (from 0.2 m over asphalt of 305 K: 0.2 m off where the ray meets it at 1.2 times that angle, 9 mm at twice, 2 µm
+/// at ten times). A ray that is not bent by what matters (kQuietShare) is not shot again.
 ///
 /// First order over nothing but a surface (lone_surface.h) and through nothing but blobs and thin screens
 /// (FieldInstant::pull) is closed form, unless what that leaves out is above the tolerance. Else the integrals are
@@ -32,6 +33,11 @@ namespace eikonal::reference {
 
 /// settings.integrator: FirstOrder or SecondOrder.
 BentHit trace_perturbed(const FieldInstant& field, const Geometry* geometry, const dvec3& origin,
+                        const dvec3& direction, const TraceSettings& settings, const StepRecorder& recorder);
+
+/// The curve x0 + x1 (+ x2) from the origin on, u = 0, to a surface that it meets itself, to settings.far or u_end;
+/// recorder gets its steps, settings otherwise as above. For a path as numbers.
+BentHit perturbed_curve(const FieldInstant& field, const Geometry* geometry, const dvec3& origin,
                         const dvec3& direction, const TraceSettings& settings, const StepRecorder& recorder);
 
 }  // namespace eikonal::reference

@@ -22,8 +22,8 @@ double fresnel_reflectance(double n1, double cos1, double n2, double cos2) {
     return 0.5 * (s * s + p * p);
 }
 
-dvec3 RayTree::radiance(const dvec3& origin, const dvec3& direction, const TraceSettings& trace,
-                        const LightSample& sample) const {
+std::optional<dvec3> RayTree::radiance(const dvec3& origin, const dvec3& direction, const TraceSettings& trace,
+                                       const LightSample& sample) const {
     return follow({origin, direction, 1, 0, 0, -1}, trace, sample);
 }
 
@@ -45,17 +45,19 @@ std::optional<Hit> RayTree::meet(const Branch& branch, const TraceSettings& trac
     const BentHit end = branch.distance == 0 ? follow_with(trace) : follow_with(at_distance(trace, branch.distance));
     p = end.at.p;
     length = branch.distance + end.length;
-    dark = end.end == BentHit::End::Trapped || end.end == BentHit::End::NoIndex;
+    dark = !end.ended();
     if (!end.hit) return std::nullopt;
     return end.surface;
 }
 
-dvec3 RayTree::follow(const Branch& branch, const TraceSettings& trace, const LightSample& sample) const {
+/// Nothing if it has no end.
+std::optional<dvec3> RayTree::follow(const Branch& branch, const TraceSettings& trace,
+                                     const LightSample& sample) const {
     dvec3 p;
     double length;
     bool dark;
     const std::optional<Hit> hit = meet(branch, trace, p, length, dark);
-    if (dark) return dvec3(0);
+    if (dark) return {};
     if (!hit) return shading_.background(p);
     const Material& material = geometry_.materials()[static_cast<std::size_t>(hit->material)];
     if (material.mirror <= 0 && !material.refractive_index) return shading_.surface(*hit, sample, sunlight_);
@@ -67,8 +69,8 @@ dvec3 RayTree::follow(const Branch& branch, const TraceSettings& trace, const Li
         if (branch.depth + 1 >= kDeepestBranch || weight < kFaintest) return dvec3(0);
         Hit side = *hit;
         if (across) side.normal = -side.normal;
-        return part *
-               follow({geometry_.leave(side), direction, weight, length, branch.depth + 1, inside}, trace, sample);
+        const Branch next{geometry_.leave(side), direction, weight, length, branch.depth + 1, inside};
+        return part * follow(next, trace, sample).value_or(dvec3(0));
     };
     if (!material.refractive_index) {
         dvec3 light = branch_off(reflected, material.mirror, false, branch.inside);

@@ -6,7 +6,7 @@
 /// rays go on bent. Within glass there is no air: rays are straight, until they leave it by its own surface.
 ///
 /// A branch ends at kDeepestBranch surfaces or when less than kFaintest of its light can reach the pixel, and is then
-/// black. Rays that are trapped or come to where n <= 0 are black, too.
+/// black. Rays that have no end (BentHit::ended) are black, too.
 #pragma once
 
 #include "reference/bent_ray.h"
@@ -29,9 +29,9 @@ class RayTree {
         : geometry_(geometry), shading_(shading), field_(field), sunlight_(sunlight), cancelled_(cancelled) {}
 
     /// direction: of any length. trace: how its ray and all that follow are traced; of straight ones nothing is read.
-    /// FrameError: cancelled.
-    dvec3 radiance(const dvec3& origin, const dvec3& direction, const TraceSettings& trace,
-                   const LightSample& sample) const;
+    /// Nothing if the ray itself has no end. FrameError: cancelled.
+    std::optional<dvec3> radiance(const dvec3& origin, const dvec3& direction, const TraceSettings& trace,
+                                  const LightSample& sample) const;
 
   private:
     /// A ray on its way: p where it starts, what part of its light reaches the pixel.
@@ -41,7 +41,7 @@ class RayTree {
         int depth;
         int inside;  ///< object of whose glass it is within, -1 for air
     };
-    dvec3 follow(const Branch& branch, const TraceSettings& trace, const LightSample& sample) const;
+    std::optional<dvec3> follow(const Branch& branch, const TraceSettings& trace, const LightSample& sample) const;
     std::optional<Hit> meet(const Branch& branch, const TraceSettings& trace, dvec3& p, double& length,
                             bool& dark) const;
     double index(const dvec3& x) const { return field_ ? field_->speed(x) : 1; }

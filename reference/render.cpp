@@ -20,7 +20,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTileSize = 32;
 constexpr int kSightRays = 33;
-constexpr float kTrappedId = -1, kNoIndexId = -2;
+constexpr float kTrappedId = -1, kNoIndexId = -2, kUnfinishedId = -3;
 /// Of a straight ray through its own hit, by rounding [px].
 constexpr double kRoundingShift = 1e-7;
 
@@ -52,7 +52,10 @@ struct Renderer::Air {
 };
 
 std::size_t RenderedFrame::trapped() const {
-    return count(id, kTrappedId);
+    return count(id, kTrappedId) + unfinished();
+}
+std::size_t RenderedFrame::unfinished() const {
+    return count(id, kUnfinishedId);
 }
 std::size_t RenderedFrame::without_index() const {
     return count(id, kNoIndexId);
@@ -137,9 +140,9 @@ void Renderer::check_camera(int frame) const {
         if (!surface || surface->surface_temperature == scene_.optics.ambient_temperature) continue;
         if (const double height = glm::dot(at - surface->origin, glm::normalize(surface->normal)); !(height > 0))
             throw UserError(fmt::format(
-                "{}: medium.{}.origin: at frame {} the camera at ({:g}, {:g}, {:g}) is {:g} m below this surface; it "
+                "medium.{}.origin: at frame {} the camera at ({:g}, {:g}, {:g}) is {:g} m below this surface; it "
                 "must be above it: lower the surface, or turn its normal towards the camera",
-                scene_.file.string(), i, frame, at.x, at.y, at.z, 0.0 - height));
+                i, frame, at.x, at.y, at.z, 0.0 - height));
     }
 }
 
@@ -178,18 +181,20 @@ void Renderer::render_tile(const Camera& camera, int frame, const Tile& tile, co
                          into);
 }
 
-/// Of no samples: without colour.
-void Renderer::render_pixel(const Camera& camera, int frame, int x, int y, const Air* air, int samples, std::size_t i,
-                            RenderedFrame& into) const {
+/// Of no samples: without colour. The end of its centre's bent ray.
+BentHit Renderer::render_pixel(const Camera& camera, int frame, int x, int y, const Air* air, int samples,
+                               std::size_t i, RenderedFrame& into) const {
+    BentHit end;
+    if (air)
+        end = center_bent(camera, x, y, *air, i, into);
+    else
+        center_straight(camera, x, y, i, into);
     if (samples > 0) {
-        const dvec3 c = colour(camera, frame, x, y, air, samples);
+        const dvec3 c = colour(camera, frame, x, y, air, samples, end.ended());
         for (int k = 0; k < 3; ++k) into.color[4 * i + static_cast<std::size_t>(k)] = storable(c[k]);
         into.color[4 * i + 3] = 1;
     }
-    if (air)
-        center_bent(camera, x, y, *air, i, into);
-    else
-        center_straight(camera, x, y, i, into);
+    return end;
 }
 
 Probe Renderer::probe(int frame, const ProbeLimits& limits) const {
@@ -206,22 +211,29 @@ Probe Renderer::try_rays(const Camera& camera, int frame, Air* air, const ProbeL
     Probe probe;
     probe.samples = std::min(settings_.colour ? settings_.samples : 0, limits.samples);
     probe.pixels = planes(limits.most, 1, probe.samples > 0);
-    const int budget = air ? air->trace.step_budget : 0;
-    probe.step_limit = std::min(budget, limits.steps);
-    if (air) air->trace.step_budget = probe.step_limit;
+    if (air) air->trace.tried_steps = limits.steps;
+    if (air) probe.step_limit = air->trace.most_steps();
+    std::vector<double> to_come(static_cast<std::size_t>(limits.most), 0.0);
     const auto start = Clock::now();
     int done = 0;
     for (int until = limits.first; done < until; until = std::min(2 * until, limits.most)) {
         tbb::parallel_for(done, until, [&](int i) {
             const dvec2 place = spread_point(static_cast<std::uint32_t>(i), 0);
-            render_pixel(camera, frame, static_cast<int>(place.x * width_), static_cast<int>(place.y * height_), air,
-                         probe.samples, static_cast<std::size_t>(i), probe.pixels);
+            const int x = static_cast<int>(place.x * width_), y = static_cast<int>(place.y * height_);
+            const auto at = static_cast<std::size_t>(i);
+            const BentHit end = render_pixel(camera, frame, x, y, air, probe.samples, at, probe.pixels);
+            if (end.end == BentHit::End::Unfinished) to_come[at] = steps_to_come(camera, x, y, *air, end);
         });
         done = until;
         probe.seconds = since(start);
         if (probe.seconds > limits.seconds) break;
     }
-    if (air) air->trace.step_budget = budget;
+    if (air) air->trace.tried_steps = TraceSettings().tried_steps;
+    for (const double steps : to_come) {
+        const double most = air ? air->trace.step_budget - probe.step_limit : 0;
+        probe.steps_to_come += std::min(steps, most);
+        if (steps > most) ++probe.beyond;
+    }
     probe.pixels.width = done;
     RenderedFrame& p = probe.pixels;
     for (auto* plane : {&p.depth, &p.length, &p.u, &p.v, &p.id, &p.steps, &p.error, &p.magnification})
@@ -229,14 +241,21 @@ Probe Renderer::try_rays(const Camera& camera, int frame, Air* air, const ProbeL
     return probe;
 }
 
-std::array<double, 2> Probe::time(double area, int samples_each, int step_budget) const {
-    const double shortest = seconds * area / pixels.width * (1 + samples_each) / (1 + samples);
-    const double steps = std::accumulate(pixels.steps.begin(), pixels.steps.end(), 0.0);
-    const double further = static_cast<double>(pixels.trapped()) * (step_budget - step_limit);
-    return {shortest, shortest * (steps > 0 ? 1 + further / steps : 1)};
+/// Of a ray that was given up: as if it went on to where the straight one ends.
+double Renderer::steps_to_come(const Camera& camera, int x, int y, const Air& air, const BentHit& tried) const {
+    const CameraRay ray = camera_ray(camera, x + 0.5, y + 0.5);
+    const auto hit = geometry_.nearest(ray.origin, glm::normalize(ray.direction), 0, air.trace.far);
+    const double ahead = std::max((hit ? hit->t : air.trace.far) - tried.length, 0.0);
+    return tried.length > 0 ? tried.steps * (ahead / tried.length) : kInfinity;
 }
 
-dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air* air, int samples) const {
+double Probe::time(double area, int samples_each) const {
+    const double steps = std::accumulate(pixels.steps.begin(), pixels.steps.end(), 0.0);
+    return seconds * area / pixels.width * (1 + samples_each) / (1 + samples) *
+           (steps > 0 ? 1 + steps_to_come / steps : 1);
+}
+
+dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air* air, int samples, bool has_end) const {
     const auto pixel =
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_) + static_cast<std::uint64_t>(x);
     const auto bits = [&](std::string_view name) {
@@ -248,13 +267,15 @@ dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Air*
                        air && air->sunlight ? &*air->sunlight : nullptr, settings_.cancelled);
     const TraceSettings straight;
     dvec3 sum(0);
-    for (int k = 0; k < samples; ++k) {
+    for (int k = 0; k < samples && (has_end || k < kTriedSamples); ++k) {
         const auto sample = static_cast<std::uint32_t>(k);
         const dvec2 p = spread_point(sample, pixel_bits);
         const CameraRay ray = camera_ray(camera, x + p.x, y + p.y);
         LightSample light{};
         if (scene_.light) light = {spread_point(sample, sun_bits), spread_point(sample, sky_bits)};
-        sum += tree.radiance(ray.origin, ray.direction, air ? air->trace : straight, light);
+        const auto seen = tree.radiance(ray.origin, ray.direction, air ? air->trace : straight, light);
+        has_end = has_end || seen;
+        sum += seen.value_or(dvec3(0));
     }
     return sum / static_cast<double>(samples);
 }
@@ -266,8 +287,8 @@ void Renderer::center_straight(const Camera& camera, int x, int y, std::size_t i
     into.depth[i] = static_cast<float>(hit ? hit->t : kInfinity);
 }
 
-void Renderer::center_bent(const Camera& camera, int x, int y, const Air& air, std::size_t i,
-                           RenderedFrame& into) const {
+BentHit Renderer::center_bent(const Camera& camera, int x, int y, const Air& air, std::size_t i,
+                              RenderedFrame& into) const {
     const dvec2 center{x + 0.5, y + 0.5};
     const CameraRay ray = camera_ray(camera, center.x, center.y);
     const dvec3 direction = glm::normalize(ray.direction);
@@ -282,9 +303,11 @@ void Renderer::center_bent(const Camera& camera, int x, int y, const Air& air, s
     into.error[i] = static_cast<float>(end.error_px);
     into.depth[i] = into.length[i] = static_cast<float>(kInfinity);
     if (settings_.magnification) into.magnification[i] = 1;
-    if (end.end == BentHit::End::Trapped || end.end == BentHit::End::NoIndex) {
-        into.id[i] = end.end == BentHit::End::Trapped ? kTrappedId : kNoIndexId;
-        return;
+    if (!end.ended()) {
+        into.id[i] = end.end == BentHit::End::Trapped   ? kTrappedId
+                     : end.end == BentHit::End::NoIndex ? kNoIndexId
+                                                        : kUnfinishedId;
+        return end;
     }
     const bool perspective = camera.projection == Projection::Perspective;
     // what is seen, from the camera: a point, or the direction of infinitely far background
@@ -307,6 +330,7 @@ void Renderer::center_bent(const Camera& camera, int x, int y, const Air& air, s
     }
     if (bundled)
         into.magnification[i] = static_cast<float>(magnification(pixels, direction, end.at, bundle, end.length));
+    return end;
 }
 
 }  // namespace eikonal::reference

@@ -8,20 +8,20 @@
 ///     below) u, v       pixel where straight rays show that same point, minus this pixel: out(p) = in(p + d), y down
 ///     [px].
 ///                Background is infinitely far in perspective, at `far` in orthographic views
-///     id         1 + index of the object seen, 0 for background, -1 for a ray that its step budget ended, -2 for one
-///                that came to where n <= 0: both are black
+///     id         1 + index of the object seen, 0 for background; black: -1 for a ray that gets nowhere (kTrapTurn of
+///                bent_ray.h), -2 for one that came to where n <= 0, -3 for one that its step budget ended
 ///     steps      of the integrator
 ///     error      its estimate of the error of u, v [px]
 ///     magnification   (if asked for) of distant things, in area; negative: folded, mirrored (ray_differential.h)
 ///
 /// The same bytes for any number of threads: every sample is a pure function of scene, frame, pixel and its index.
+/// Where a pixel's centre and its first kTriedSamples samples have no end the others are taken to have none: black.
 /// Not finite radiance never leaves: it is limited to 0 … the largest half.
 ///
 /// Failures: UserError for the scene (geometry.h, shading.h, camera.h, noise/field.h), FrameError when a frame cannot
 /// be rendered or is given up (cancel.h).
 #pragma once
 
-#include <array>
 #include <functional>
 
 #include "reference/cancel.h"
@@ -31,6 +31,8 @@
 #include "warp/scene/camera.h"
 
 namespace eikonal::reference {
+
+inline constexpr int kTriedSamples = 3;
 
 struct RenderSettings {
     int samples = 16;  ///< of colour a pixel >= 1
@@ -49,8 +51,10 @@ struct RenderedFrame {
     std::vector<float> depth;  ///< axial [m]
     std::vector<float> length, u, v, id, steps, error, magnification;
 
-    /// Rays through pixels' centres that ended without an answer, and that were folded.
+    /// Rays through pixels' centres that gave no answer: those that get nowhere or that their budget ended, of them the
+    /// latter, and those that came to where n <= 0. And those that were folded.
     std::size_t trapped() const;
+    std::size_t unfinished() const;
     std::size_t without_index() const;
     std::size_t folded() const;
 };
@@ -68,11 +72,13 @@ struct ProbeLimits {
 struct Probe {
     RenderedFrame pixels;           ///< those tried, in one row, under straight sunlight
     int samples = 0;                ///< of colour a pixel
-    int step_limit = 0;             ///< what ended the rays that `pixels` count as trapped
+    int step_limit = 0;             ///< what ended the rays that `pixels` count as unfinished
+    double steps_to_come = 0;       ///< that those rays would still take, at their pace, up to their budget
+    std::size_t beyond = 0;         ///< of them, those that would use up their budget
     double setup = 0, seconds = 0;  ///< wall time: of the media, of the rays
 
-    /// Wall time of so many pixels [s] if unfinished rays end at once, and if they go on to the step budget.
-    std::array<double, 2> time(double area, int samples_each, int step_budget) const;
+    /// Wall time of so many pixels [s].
+    double time(double area, int samples_each) const;
 };
 
 /// What is told while a frame is rendered; any may be left out.
@@ -116,11 +122,12 @@ class Renderer {
     Probe try_rays(const Camera& camera, int frame, Air* air, const ProbeLimits& limits) const;
     double sight(const Camera& camera, const TraceSettings& trace, double far) const;
     void render_tile(const Camera& camera, int frame, const Tile& tile, const Air* air, RenderedFrame& into) const;
-    void render_pixel(const Camera& camera, int frame, int x, int y, const Air* air, int samples, std::size_t i,
-                      RenderedFrame& into) const;
-    dvec3 colour(const Camera& camera, int frame, int x, int y, const Air* air, int samples) const;
+    BentHit render_pixel(const Camera& camera, int frame, int x, int y, const Air* air, int samples, std::size_t i,
+                         RenderedFrame& into) const;
+    dvec3 colour(const Camera& camera, int frame, int x, int y, const Air* air, int samples, bool has_end) const;
     void center_straight(const Camera& camera, int x, int y, std::size_t i, RenderedFrame& into) const;
-    void center_bent(const Camera& camera, int x, int y, const Air& air, std::size_t i, RenderedFrame& into) const;
+    BentHit center_bent(const Camera& camera, int x, int y, const Air& air, std::size_t i, RenderedFrame& into) const;
+    double steps_to_come(const Camera& camera, int x, int y, const Air& air, const BentHit& tried) const;
 
     Scene scene_;
     RenderSettings settings_;

@@ -20,6 +20,8 @@ const char* ending(const BentHit& end) {
         case BentHit::End::Escaped:
             return "reached its length";
         case BentHit::End::Trapped:
+            return "bends by more than numbers hold";
+        case BentHit::End::Unfinished:
             return "was ended by its step budget";
         case BentHit::End::NoIndex:
             return "came to where there is no index of refraction";
@@ -38,6 +40,7 @@ int run(const PathOptions& o) {
     trace.tolerance_px = o.tolerance;
     trace.u_end = o.length;
     trace.step_budget = o.rays.step_budget;
+    trace.end_trapped = false;  // its length is given
     std::optional<Geometry> geometry;
     if (!scene.objects.empty()) geometry.emplace(scene, o.origin);
     const FieldInstant field = air.at(o.frame.value_or(scene.time.first_frame));
@@ -58,7 +61,7 @@ int run(const PathOptions& o) {
         std::cout.flush();
     }
     fmt::print(stderr, "the ray {} at u = {:.9g} m after {} steps\n", ending(end), end.at.u, end.steps);
-    return end.end == BentHit::End::Trapped || end.end == BentHit::End::NoIndex ? 1 : 0;
+    return end.ended() ? 0 : 1;
 }
 
 }  // namespace eikonal::reference

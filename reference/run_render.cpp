@@ -19,8 +19,8 @@
 namespace eikonal::reference {
 namespace {
 
-/// Part of the rays tried that may go on for long before a frame's user is warned.
-constexpr double kManyUnfinished = 0.05;
+/// Part of the rays tried that may have no end before a frame's user is warned.
+constexpr double kManyWithoutEnd = 0.05;
 
 using Clock = std::chrono::steady_clock;
 
@@ -38,7 +38,9 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
         if (pixels > 0)
             fmt::print(stderr, "frame {}: warning: {} of {} pixels {}\n", number, pixels, frame.id.size(), what);
     };
-    warn(frame.trapped(), "hold rays that the step budget ended (id -1, black); --step-budget raises it");
+    warn(frame.trapped() - frame.unfinished(),
+         "hold rays that go round and round or hardly on (id -1, black): the media are too strong");
+    warn(frame.unfinished(), "hold rays that the step budget ended (id -3, black); --step-budget raises it");
     warn(frame.without_index(), "hold rays that came to where n <= 0 (id -2, black); lower [optics] exaggeration");
     if (!frame.magnification.empty())
         fmt::print(stderr, "frame {}: {} of {} pixels are folded (negative magnification)\n", number, frame.folded(),
@@ -52,17 +54,25 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
                seconds, mean(frame.steps), mean(frame.error));
 }
 
-/// Says at once what would only show after hours.
+/// Says at once what would only show after a long time.
 void warn(const RenderOptions& o, int frame, const Renderer& renderer, const Probe& probe) {
-    const std::size_t unfinished = probe.pixels.trapped();
-    if (unfinished < kManyUnfinished * static_cast<double>(probe.pixels.width)) return;
-    const double seconds = probe.time(static_cast<double>(renderer.width()) * renderer.height(), o.render.samples,
-                                      o.render.rays.step_budget)[1];
+    const auto many = [&](std::size_t rays) {
+        return static_cast<double>(rays) >= kManyWithoutEnd * static_cast<double>(probe.pixels.width);
+    };
+    const std::size_t trapped = probe.pixels.trapped() - probe.pixels.unfinished();
+    if (many(trapped))
+        fmt::print(
+            stderr,
+            "frame {}: warning: {} of {} rays tried go round and round or hardly on, their pixels are black: the "
+            "media are too strong\n",
+            frame, trapped, probe.pixels.width);
+    if (!many(probe.beyond)) return;
+    const double seconds = probe.time(static_cast<double>(renderer.width()) * renderer.height(), o.render.samples);
     fmt::print(stderr,
-               "frame {}: warning: {} of {} rays tried did not end within {} steps: where they are trapped or curl up "
-               "the frame takes up to {:.2g} {}; weaker media, fewer --samples or a smaller --step-budget shorten it\n",
-               frame, unfinished, probe.pixels.width, probe.step_limit, seconds > 3600 ? seconds / 3600 : seconds,
-               seconds > 3600 ? "h" : "s");
+               "frame {}: warning: {} of {} rays tried will use up their {} steps and be black, in about {:.2g} {} a "
+               "frame: give the media bounds (falloff), or rays something to meet, or raise --step-budget\n",
+               frame, probe.beyond, probe.pixels.width, o.render.rays.step_budget,
+               seconds > 3600 ? seconds / 3600 : seconds, seconds > 3600 ? "h" : "s");
 }
 
 RenderedFrame render(const Renderer& renderer, const RenderOptions& o, int frame) {

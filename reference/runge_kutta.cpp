@@ -92,6 +92,14 @@ void euler(Step& step) {
     step.turn = step.h * step.force_from;
 }
 
+/// Length of a piece of curve du long from its chord and dx/du at its start, middle and end.
+double length_of(const dvec3& chord, double du, const std::array<dvec3, 3>& p) {
+    const double length = glm::length(chord);
+    if (!(length > 0)) return 0;
+    const auto longer = [&](const dvec3& v) { return glm::length(v) - glm::dot(v, chord) / length; };
+    return length + du / 6 * (longer(p[0]) + 4 * longer(p[1]) + longer(p[2]));
+}
+
 /// Force at the end, and the local error against Simpson's rule.
 void finish(const FieldInstant& field, Step& step) {
     const double h = step.h;
@@ -134,11 +142,13 @@ std::array<double, 5> Step::along(const dvec3& n) const {
 }
 
 dvec3 Step::position(double theta) const {
+    if (straight || theta == 1) return from.x + theta * shift;
+    if (theta == 0) return from.x;
     return from.x + offset(theta);
 }
 
 dvec3 Step::direction(double theta) const {
-    if (h == 0) return from.p;
+    if (straight || h == 0) return from.p;
     const dvec3 D = excess_shift(), V = excess_turn(), A = excess_force();
     return from.p + theta * h * force_from +
            theta * theta / h *
@@ -154,16 +164,17 @@ dvec3 Step::force(double theta) const {
                              theta * (-180.0 * D + 84.0 * V - 12.0 * A + theta * (120.0 * D - 60.0 * V + 10.0 * A)));
 }
 
+// The chord is as exact as the step; Simpson's rule tells by how much the curve is longer: |p| may rise and fall within
+// a step, which makes neither longer.
 double Step::length(double theta) const {
-    return theta * h / 6 *
-           (glm::length(from.p) + 4 * glm::length(direction(0.5 * theta)) + glm::length(direction(theta)));
+    return length_of(offset(theta), theta * h, {from.p, direction(0.5 * theta), direction(theta)});
 }
 
-// The curve's direction and force at its middle, by the formulas above.
+// The curve's direction at its middle, by the formulas above.
 double Step::length() const {
     if (straight || h == 0) return h * glm::length(from.p);
     const dvec3 middle = 1.875 / h * shift - 0.875 * from.p - 0.4375 * turn + h / 32 * (force_to - force_from);
-    return h / 6 * (glm::length(from.p) + 4 * glm::length(middle) + glm::length(from.p + turn));
+    return length_of(shift, h, {from.p, middle, from.p + turn});
 }
 
 double Step::bend() const {

@@ -52,6 +52,7 @@ TraceSettings SceneAir::trace_settings(const Camera& camera) const {
     trace.pixel = 1 / camera.f_px;
     trace.step = settings_.step;
     trace.step_budget = settings_.step_budget;
+    trace.end_trapped = true;
     trace.far = std::max(kFarthestSight, 10 * far_);
     trace.surface = baseline_surface(settings_.integrator, scene_.media);
     trace.lone = lone_;

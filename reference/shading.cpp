@@ -10,7 +10,6 @@
 #include "noise/error.h"
 #include "noise/portable_math.h"
 #include "reference/direction.h"
-#include "reference/scene_place.h"
 #include "reference/shadowgraph.h"
 #include "warp/image/picture.h"
 
@@ -24,14 +23,12 @@ int wrapped(int i, int n) {
     return r < 0 ? r + n : r;
 }
 
-/// key: what names it in the scene, or names `owner`, the file that does.
-Texture read_texture(const Scene& scene, const std::filesystem::path& file, const std::string& key,
-                     const std::filesystem::path& owner) {
+/// key: what names it in the scene, or names the file that does.
+Texture read_texture(const std::filesystem::path& file, const std::string& key) {
     try {
         return Texture(file);
     } catch (const FrameError& error) {
-        throw UserError(
-            fmt::format("{}: cannot use the texture {}: {}", place_of(scene, key, owner), file.string(), error.what()));
+        throw UserError(fmt::format("{}: cannot use the texture {}: {}", key, file.string(), error.what()));
     }
 }
 
@@ -39,9 +36,7 @@ Texture read_texture(const Scene& scene, const std::filesystem::path& file, cons
 Texture texture_of(const Scene& scene, const Material& material) {
     const ObjectSpec& object = scene.objects[static_cast<std::size_t>(material.object)];
     const bool own = object.texture == material.texture;
-    return read_texture(scene, *material.texture,
-                        fmt::format("object.{}.{}", material.object, own ? "texture" : "file"),
-                        own ? *object.texture : object.file.value());
+    return read_texture(*material.texture, fmt::format("object.{}.{}", material.object, own ? "texture" : "file"));
 }
 
 }  // namespace
@@ -96,8 +91,7 @@ Shading::Shading(const Scene& scene, const Geometry& geometry) : scene_(scene), 
         }
         texture_of_material_.push_back(index);
     }
-    if (scene.background.image)
-        sky_ = read_texture(scene, *scene.background.image, "background.image", *scene.background.image);
+    if (scene.background.image) sky_ = read_texture(*scene.background.image, "background.image");
 }
 
 dvec3 Shading::surface(const Hit& hit, const LightSample& sample, const Shadowgraph* bent) const {

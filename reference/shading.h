@@ -10,7 +10,7 @@
 /// hemisphere: this brings A where it meets nothing, else the sunlight and, without further rays, sky light A off what
 /// it meets (one bounce). The background picture lights nothing.
 ///
-/// Failures: UserError naming file, line and key (scene_place.h) of a texture that is missing or cannot be read.
+/// Failures: UserError naming the key of a texture that is missing or cannot be read.
 #pragma once
 
 #include "reference/geometry.h"

@@ -2,10 +2,10 @@
 ///
 /// The ray comes as steps (integrator.h). It is cut into chords, each shot at the geometry as one segment; a chord ends
 /// where the ray has turned so far that it may leave it by more than the allowed deviation: a curve of length l that
-/// turns by β stays within βl/4 of its chord. So gentle bending costs few segments however many steps it took, and a
-/// strong one many a step. A chord's hit is then refined on the curve itself against the tangent plane there, and the
-/// surface shot at once more along the ray's tangent: the point found is on the curve to rounding. Where that finds
-/// nothing, because the chord cuts what the curve passes, the chord is halved.
+/// turns by β stays within βl/4 of its chord, one of curvature κ at most within κl²/8. So gentle bending costs few
+/// segments however many steps it took, and a strong one many a step. A chord's hit is then refined on the curve itself
+/// against the tangent plane there, and the surface shot at once more along the ray's tangent: the point found is on
+/// the curve to rounding. Where that finds nothing, because the chord cuts what the curve passes, the chord is halved.
 ///
 /// So an object can be missed only where the curve enters it by less than the allowed deviation.
 /// Embree holds positions in float: chords overlap by what that may lose (kFloatSlack).
@@ -42,9 +42,9 @@ class SurfaceSearch {
     SurfaceSearch(const Geometry* geometry, const Deviation& deviation, double distance)
         : geometry_(geometry), deviation_(deviation), start_(distance), distance_(distance) {}
 
-    /// Steps follow each other without gaps; length: step.length(); `kink` is how far the direction jumps at the start
-    /// of this one [rad].
-    std::optional<Met> add(const Step& step, double length, double kink = 0);
+    /// Steps follow each other without gaps; length, bend: step.length(), step.bend(); `kink` is how far the direction
+    /// jumps at the start of this one [rad].
+    std::optional<Met> add(const Step& step, double length, double bend, double kink = 0);
     /// Tests what is left. Call it at the end of the ray.
     std::optional<Met> finish();
 
@@ -52,11 +52,20 @@ class SurfaceSearch {
     static constexpr int kMostPieces = 8;
 
   private:
+    /// Between two places on the curve, and these.
+    struct Chord {
+        double from, until;
+        dvec3 a, b;
+    };
+
     double room(double curvature) const;
     std::optional<Met> close(double until);
-    std::optional<Met> test(double from, double until, double travelled, int depth) const;
-    std::optional<Met> refine(double from, double until, double guess, double back, const Hit& chord_hit) const;
+    std::optional<Met> test(const Chord& chord, double travelled, int depth) const;
+    double place_after(double from, double until, double way) const;
+    std::optional<Met> refine(double from, double until, double guess, double back, double distance,
+                              const Hit& chord_hit) const;
     int piece_of(double place) const;
+    const Step& piece(int index) const { return *pieces_[static_cast<std::size_t>(index)]; }
     dvec3 position(double place) const;
     double plane_root(double from, double until, double guess, const Hit& hit) const;
 
@@ -65,9 +74,11 @@ class SurfaceSearch {
     double start_;            ///< path before the ray [m]
     double distance_;         ///< path up to the end of the chord so far [m]
     double chord_start_ = 0;  ///< place on the curve where the chord starts: index of the piece plus theta
+    dvec3 chord_from_{0};
     double chord_length_ = 0, chord_bend_ = 0;
+    double chord_curvature_ = 0;  ///< the largest [1/m]; infinite if it has a kink
     int count_ = 0;
-    std::array<Step, kMostPieces> pieces_;
+    std::array<std::optional<Step>, kMostPieces> pieces_;  ///< the first count_ are there
 };
 
 }  // namespace eikonal::reference

@@ -404,10 +404,68 @@ TEST(Steps, TrappedRaysEnd) {
         settings.step_budget = 500;
         settings.far = 1e9;
         const BentHit hit = trace(air.now, nullptr, {1, 0, 0}, {0, 1, 0}, settings);
-        EXPECT_EQ(hit.end, BentHit::End::Trapped);
+        EXPECT_EQ(hit.end, BentHit::End::Unfinished);
         EXPECT_EQ(hit.steps, 500);
         EXPECT_TRUE(std::isfinite(hit.at.x.x + hit.at.p.x + hit.error_px));
+        // Sooner, if it may: after four times round.
+        settings.end_trapped = true;
+        const BentHit seen = trace(air.now, nullptr, {1, 0, 0}, {0, 1, 0}, settings);
+        EXPECT_EQ(seen.end, BentHit::End::Trapped);
+        EXPECT_LE(seen.steps, 250);
     }
+    // Steps of 1e-7 m take nobody to a wall 10 m away, which 1e-4 m do.
+    for (const double g : {1e6, 1e3}) {
+        ProfileSpec rod = profile(ProfileKind::Rod);
+        rod.g = g;
+        const Air fine({rod});
+        const auto wall = geometry({plane({0, 10, 0}, {0, -1, 0})});
+        TraceSettings settings = usual();
+        settings.end_trapped = true;
+        settings.step_budget = 1000000;
+        const BentHit hit = trace(fine.now, wall.get(), {0, 0, 0}, {0.1, std::sqrt(0.99), 0}, settings);
+        EXPECT_EQ(hit.end, g > 1e4 ? BentHit::End::Trapped : BentHit::End::Surface);
+        if (hit.end == BentHit::End::Trapped) {
+            EXPECT_LE(hit.steps, kPaceSteps + 1);
+        }
+    }
+}
+
+// Air in which rays lose their way, from mere shimmer to no way at all: what arrives is what arrives without looking.
+TEST(Steps, OnlyTrappedRaysAreEndedEarly) {
+    const auto wall = geometry({plane({0, 0, -3}, {0, 0, 1})});
+    int arrived = 0, ended = 0;
+    for (const double cn2 : {1e-12, 1e-4, 1e-3, 3e-3, 1e-2, 1.0, 1e12}) {
+        TurbulenceSpec spec;
+        spec.form = TurbulenceForm::Lattice;
+        spec.lattice = {32, 32, 32, 1};
+        spec.period = {1.0, 1.0, 1.0, 1.0};
+        spec.outer_scale = 0.5;
+        spec.inner_scale = 0.06;
+        spec.cn2 = cn2;
+        const Air air({spec});
+        for (int i = 0; i < 12; ++i) {
+            const dvec3 d = glm::normalize(dvec3(0.05 * (i % 4) - 0.1, 0.05 * (i / 4) - 0.05, -1));
+            TraceSettings settings = usual();
+            settings.tolerance_px = 0.1;
+            settings.step_budget = 20000;
+            settings.end_trapped = true;
+            const BentHit seen = trace(air.now, wall.get(), {0.3, 0.4, 0}, d, settings);
+            settings.end_trapped = false;
+            if (seen.end == BentHit::End::Trapped) {
+                ++ended;
+                EXPECT_LE(seen.steps, cn2 > 1 ? 5000 : 20000);
+                if (i >= 2) continue;
+                EXPECT_FALSE(trace(air.now, wall.get(), {0.3, 0.4, 0}, d, settings).ended()) << cn2;
+                continue;
+            }
+            const BentHit whole = trace(air.now, wall.get(), {0.3, 0.4, 0}, d, settings);
+            EXPECT_EQ(seen.end, whole.end);
+            EXPECT_EQ(seen.at.x, whole.at.x);
+            arrived += seen.hit;
+        }
+    }
+    EXPECT_GE(arrived, 12);
+    EXPECT_GE(ended, 12);
 }
 
 TEST(Steps, EndWhereThereIsNoIndex) {
@@ -480,6 +538,66 @@ TEST(Path, IsWrittenSmoothlyUpToItsEnd) {
     EXPECT_GT(rows, 40);
     EXPECT_EQ(row[0], hit.at.u);
     EXPECT_EQ(dvec3(row[1], row[2], row[3]), hit.at.x);
+}
+
+// x0(u) + x1(u) from the origin on, and p its derivative; what second order adds is closer to the bent ray.
+TEST(Path, OfFirstAndSecondOrderIsThePerturbedCurve) {
+    const double sigma = 0.3;
+    OpticsSpec strong;
+    strong.exaggeration = 20;
+    const Air air({one_blob({2, -0.2, 0}, sigma)}, strong);
+    const auto wall = geometry({plane({5, 0, 0}, {-1, 0, 0.3})});
+    const dvec3 origin{0, 0, 0}, d{1, 0, 0};
+    const double speed = air.now.speed(origin);
+    TraceSettings settings = usual();
+    settings.perspective = false;
+    settings.tolerance_px = 1e-6;
+    settings.pixel = 1;
+    settings.u_end = 10;
+    std::ostringstream ignored;
+    const BentHit truth = write_path(air.now, wall.get(), origin, d, settings, ignored, "ray.csv");
+    double error[2];
+    for (const bool second : {false, true}) {
+        settings.integrator = second ? Integrator::SecondOrder : Integrator::FirstOrder;
+        std::stringstream text;
+        const BentHit hit = write_path(air.now, wall.get(), origin, d, settings, text, "ray.csv");
+        ASSERT_TRUE(hit.hit);
+        EXPECT_NEAR(glm::dot(hit.at.x - dvec3(5, 0, 0), glm::normalize(dvec3(-1, 0, 0.3))), 0, 1e-12);
+        EXPECT_GT(hit.length, glm::length(hit.at.x));
+        error[second] = glm::length(hit.at.x - truth.at.x);
+        std::string line;
+        std::getline(text, line);
+        std::vector<RayState> rows;
+        while (std::getline(text, line)) {
+            std::replace(line.begin(), line.end(), ',', ' ');
+            std::istringstream numbers(line);
+            RayState& row = rows.emplace_back();
+            numbers >> row.u >> row.x.x >> row.x.y >> row.x.z >> row.p.x >> row.p.y >> row.p.z;
+        }
+        ASSERT_GT(rows.size(), 10u);
+        EXPECT_EQ(rows.front().u, 0);
+        EXPECT_EQ(rows.front().x, origin);
+        EXPECT_EQ(rows.front().p, speed * d);
+        EXPECT_EQ(rows.back().x, hit.at.x);
+        for (std::size_t i = 1; i < rows.size(); ++i) {
+            const double h = rows[i].u - rows[i - 1].u;
+            const dvec3 mean = 0.5 * (rows[i].p + rows[i - 1].p);
+            EXPECT_LE(glm::length((rows[i].x - rows[i - 1].x) / h - mean), 2e-4) << i;
+        }
+        if (second) continue;
+        // By Simpson's rule: x1(u) = ∫ (u - w) F(x0(w)) dw.
+        const RayState& end = rows.back();
+        constexpr int kParts = 2000;
+        dvec3 x1(0);
+        for (int i = 0; i <= kParts; ++i) {
+            const double w = end.u * i / kParts, weight = i == 0 || i == kParts ? 1 : i % 2 ? 4 : 2;
+            x1 += weight * (end.u - w) * air.now.force(origin + w * speed * d, speed * d);
+        }
+        x1 *= end.u / (3 * kParts);
+        EXPECT_LE(glm::length(origin + end.u * speed * d + x1 - end.x), 1e-6);
+        EXPECT_GT(glm::length(x1), 1e-3);
+    }
+    EXPECT_LT(error[1], 0.3 * error[0]);
 }
 
 }  // namespace

@@ -311,26 +311,27 @@ TEST(Mirage, FiniteAndBounded) {
 constexpr double kHeight = 1.5, kFocal = 6000, kPost = 300, kHills = 4000;
 constexpr PixelWindow kPlate{0, 0, 160, 360};
 constexpr int kHorizon = 180;
-bool is_post(int x, int y) {
+bool is_post(int x, int y, double tall = 4) {
     const double height = kHeight - kPost * (y + 0.5 - kHorizon) / kFocal;
-    return x >= 60 && x < 100 && height > 0 && height < 4;
+    return x >= 60 && x < 100 && height > 0 && height < tall;
 }
 
-DepthPlane plate_depth() {
+DepthPlane plate_depth(double tall) {
     std::vector<float> metres;
     for (int y = 0; y < kPlate.height; ++y)
         for (int x = 0; x < kPlate.width; ++x) {
             const double v = y + 0.5 - kHorizon, ground = v > 0 ? kHeight * kFocal / v : kInfinity;
-            metres.push_back(static_cast<float>(std::min({is_post(x, y) ? kPost : kInfinity, ground, kHills})));
+            metres.push_back(static_cast<float>(std::min({is_post(x, y, tall) ? kPost : kInfinity, ground, kHills})));
         }
     return {kPlate, std::move(metres)};
 }
 
 struct Plate {
-    DepthPlane depth = plate_depth();
+    DepthPlane depth;
     std::vector<Mirage> mirages;
-    explicit Plate(const SurfaceSpec& spec)
-        : mirages{mirage_of(spec, level(kHeight, kFocal, kPlate.width, kPlate.height), kHills)} {}
+    explicit Plate(const SurfaceSpec& spec, double tall = 4)
+        : depth(plate_depth(tall)),
+          mirages{mirage_of(spec, level(kHeight, kFocal, kPlate.width, kPlate.height), kHills)} {}
 
     std::vector<float> map(const PixelWindow& tile, DepthMeeting how = DepthMeeting::March,
                            const std::vector<Band>& bands = {}) const {
@@ -377,6 +378,34 @@ TEST(Mirage, PlateShowsWhatLiesBehindInverted) {
         // the post above its own base stays as it is
         for (int y = 130; y < base - 1; ++y) EXPECT_NEAR(Plate::source(uv, 80, y), y, 0.3) << y;
     }
+}
+
+TEST(Mirage, BehindAPostStandsTheGroundBesideIt) {
+    constexpr double kTall = 1;
+    const Plate plate(surface(270, 1), kTall);
+    const std::vector<float> uv = plate.map(kPlate);
+    int hidden = 0;
+    for (int y = kHorizon - 100; y < kHorizon + 60; ++y)
+        for (int x = 60; x < 100; ++x) {
+            const std::size_t i = 2 * static_cast<std::size_t>(y * kPlate.width + x);
+            const double sx = x + static_cast<double>(uv[i]), sy = y + static_cast<double>(uv[i + 1]);
+            const auto nearest = [](double v) { return static_cast<int>(std::floor(v + 0.5)); };
+            if (is_post(nearest(sx), nearest(sy), kTall)) continue;
+            if (plate.depth.at(nearest(sx), nearest(sy)) < kPost) continue;  // before its foot
+            // antialiased, these pixels would hold some of the post
+            for (const int j : {-1, 1})
+                for (const int k : {-1, 1})
+                    ASSERT_FALSE(is_post(nearest(sx + j), nearest(sy + k), kTall))
+                        << x << ' ' << y << " reads " << sx << ' ' << sy;
+            Mirage::PixelRay ray;
+            if (!plate.mirages[0].ray(x, y, ray) || !(ray.end < kHills)) continue;
+            const double end_y = y + static_cast<double>(plate.mirages[0].shift(ray, ray.end).y);
+            if (!is_post(x, nearest(end_y), kTall)) continue;
+            ++hidden;
+            EXPECT_TRUE(sx < 60 || sx >= 100);
+            EXPECT_NEAR(sy, end_y, 1e-3) << "ground as far away, " << x << ' ' << y;
+        }
+    EXPECT_GT(hidden, 100);
 }
 
 TEST(Mirage, MapDependsOnNoWindow) {

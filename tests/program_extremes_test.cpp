@@ -57,8 +57,9 @@ class ExtremesTest : public Program {
         write_text("lattice.toml",
                    scene(air + "form = \"lattice\"\nlattice = [16, 16, 16, 4]\nperiod = [4, 4, 40, 4]\n", size));
         write_text("blobs.toml", scene("type = \"blobs\"\nblob = [{center = [0.05, 1.5, -5]}]\n", size));
-        write_text("source.toml",
-                   scene("type = \"blobs\"\nsource = [{from = [-1, 1.5, -5], to = [1, 1.5, -5]}]\n", size));
+        write_text(
+            "source.toml",
+            scene("type = \"blobs\"\nsource = [{from = [-1, 1.5, -5], to = [1, 1.5, -5], lifetime = 5}]\n", size));
         write_text("surface.toml", scene("type = \"surface\"\norigin = [0, 1, 0]\n", size));
     }
     inline static const Words kAir{"screens.toml", "noise.toml", "lattice.toml"};
@@ -210,9 +211,14 @@ TEST_F(ExtremesTest, DepthMaps) {
     const Ended told = run(words);
     EXPECT_EQ(told.status, 0);
     ASSERT_EQ(told.lines().size(), 1) << told.err;
-    for (const char* part : {"warning: 'z.exr'", "96 of 3072 pixels", "default --far 1000 m"})
+    for (const char* part : {"warning: depth reaches 5000 m", "default --far 1000 m; medium.0: its thin screens end"})
         EXPECT_NE(told.err.find(part), std::string::npos) << told.err;
     silent(run(together(words, {"--overwrite", "--far", "1000"})));
+    depth("z.exr", [](int x, int) { return x < 2 ? 5e5F : 5; });
+    wrong({"--scene", "lattice.toml", "--set", "plate={far=5}", "--depth", "z.exr"}, 1,
+          {"frame 1", "medium.0: depth reaches 500000 m", "at most 20000", "shorter --far"});
+    depth("z.exr", [](int x, int) { return x < 2 ? 20 : 5; });
+    silent(run({"map", "--scene", "lattice.toml", "--set", "plate={far=5}", "--depth", "z.exr", "-o", "g.exr"}));
 }
 
 // A camera that zooms out until its corner rays are too long, and in until what was too weak to see is not.

@@ -80,6 +80,8 @@ TEST_F(MediaTest, BadBlobsNameTheirKey) {
     wrong(head + "blob = [{center = [0, nan, -3]}]\n", {"wrong.toml:11:", "center", "nan"});
     wrong(head + "source = [{from = [0, 1, inf]}]\n", {"wrong.toml:11:", "from", "inf"});
     wrong(head + "source = [{rate = -1}]\n", {"wrong.toml:11:", "rate", "-1", ">= 0"});
+    wrong(head + "source = [{rate = 20}]\n", {"wrong.toml:11:", "medium.0.source.0: lifetime is missing"});
+    wrong(head + "[[medium.source]]\nrate = 20\n", {"wrong.toml:11:", "medium.0.source.0: lifetime is missing"});
     wrong(head + "source = [{lifetime = 0}]\n", {"wrong.toml:11:", "lifetime", ">= 1e-06"});
     wrong(head + "source = [{lifetime = -2}]\n", {"wrong.toml:11:", "lifetime", "-2"});
     wrong(head + "source = [{cooling = -2}]\n", {"wrong.toml:11:", "cooling", "-2"});
@@ -164,7 +166,7 @@ type = "blobs"
 blob = [{center = [0, 1, -4], temperature = 300}]
 [[medium]]
 type = "blobs"
-source = [{rate = 0}]
+source = [{rate = 0, lifetime = 5}]
 [[medium]]
 type = "surface"
 surface_temperature = 300

@@ -90,17 +90,36 @@ TEST_F(ModelTest, WarnsOfANamedModelBeyondTheTolerance) {
         << how.err;
 }
 
+// What would help is told: a dearer model where one suffices, the tracer where none does, no model where none is used.
+TEST_F(ModelTest, NamesWhatSuffices) {
+    Ended how;
+    const double coarse = p95(report({"--model", "table"}));
+    report({"--model", "table", "--tolerance", std::to_string(0.9 * coarse)}, &how);
+    EXPECT_NE(how.err.find("; --model "), std::string::npos) << how.err;
+    EXPECT_NE(how.err.find(" should keep within it"), std::string::npos) << how.err;
+    EXPECT_EQ(how.err.find("eikonal-trace"), std::string::npos) << how.err;
+    const nlohmann::json none = report({"--model", "second-order", "--tolerance", "1e-12"}, &how);
+    EXPECT_NE(how.err.find("; eikonal-trace render follows the rays truly"), std::string::npos) << how.err;
+    EXPECT_EQ(none["warnings"].size(), 1U) << none["warnings"];
+    write_text("hot.toml",
+               "[camera]\nresolution = [64, 48]\nposition = [0, 1.5, 0]\nhorizontal_fov = 0.5\n"
+               "look_at = [0, 1.5, -1]\n[[medium]]\ntype = \"surface\"\ndropoff = 1\n");
+    const Ended surface = run({"map", "--scene", "hot.toml", "-o", "h.exr", "--tolerance", "1e-12"});
+    EXPECT_EQ(surface.status, 0) << surface.err;
+    EXPECT_NE(surface.err.find("no medium of this scene takes a model"), std::string::npos) << surface.err;
+    EXPECT_EQ(surface.err.find(" is used"), std::string::npos) << surface.err;
+}
+
 TEST_F(ModelTest, ExplainTellsAndWritesNothing) {
     plate("in.png");
     const Words before = names();
     const Ended ended = run({"warp", "in.png", "-o", "out.png", "--scene", "air.toml", "--explain"});
     EXPECT_EQ(ended.status, 0) << ended.err;
-    for (const char* line : {"picture: 64 x 48", "frames 1 to make", "medium.0: model first-order", "px rms expected at 30 m",
-                             "error: 95 of 100 of 64", "time: about", "memory: about"})
+    for (const char* line : {"picture: 64 x 48", "frames 1 to make", "medium.0: model first-order",
+                             "px rms expected at 30 m", "error: 95 of 100 of 64", "time: about", "memory: about"})
         EXPECT_NE(ended.out.find(line), std::string::npos) << line << " in " << ended.out;
     EXPECT_EQ(names(), before);
-    const Ended nothing =
-        run({"map", "-o", "m.exr", "--scene", "air.toml", "--set", "medium.0.cn2=0", "--explain"});
+    const Ended nothing = run({"map", "-o", "m.exr", "--scene", "air.toml", "--set", "medium.0.cn2=0", "--explain"});
     EXPECT_EQ(nothing.status, 0) << nothing.err;
     EXPECT_NE(nothing.out.find("medium.0: left out, its strength is zero"), std::string::npos) << nothing.out;
     refused(run({"map", "-o", "m.exr", "--scene", "none.toml", "--explain"}), 2, {"none.toml"});

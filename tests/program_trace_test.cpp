@@ -92,7 +92,10 @@ TEST_F(Trace, ScenesThatCannotBeRenderedSayWhy) {
     object("shape = \"mesh\"\nfile = \"none.obj\"\n");
     refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml:3: object.0.file: ", "none.obj"});
     refuses(render({"scene.toml", "-o", "a.exr", "--set", "object.0.file=other.obj"}), 2,
-            {"scene.toml: object.0.file: ", "other.obj"});
+            {"eikonal-trace: --set object.0.file=other.obj: object.0.file: ", "other.obj"});
+    refuses(render({"scene.toml", "-o", "a.exr", "--set", "object.0.shape=plane", "--set", "object.0.file=", "--set",
+                    "object.0.texture=missing.png"}),
+            2, {"eikonal-trace: --set object.0.texture=missing.png: object.0.texture: "});
     object("shape = \"mesh\"\nfile = \"bad.obj\"\n");
     for (const char* text :
          {"", "rubbish\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}) {
@@ -134,7 +137,7 @@ TEST_F(Trace, ACameraWithinASphereIsPointedOut) {
 
 TEST_F(Trace, ACameraBelowAHeatedSurfaceIsRefused) {
     wall("position = [0, -3, 0]\n" + kSurface);
-    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"scene.toml: medium.0.origin", "2 m below"});
+    refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"eikonal-trace: scene.toml:6: medium.0.origin", "2 m below"});
     // No air at all, and none that is heated.
     EXPECT_EQ(render({"scene.toml", "-o", "a.exr", "--straight", "--samples", "1"}).status, 0);
     EXPECT_EQ(
@@ -142,7 +145,28 @@ TEST_F(Trace, ACameraBelowAHeatedSurfaceIsRefused) {
         0);
 }
 
-TEST_F(Trace, RaysThatDoNotEndAreToldBeforeTheyCostHours) {
+// What only shows when a scene is used is told with its place as what its reader finds is, by either program.
+TEST_F(Trace, BothProgramsNameThePlaceOfWhatIsWrong) {
+    const auto both = [&](const std::string& more, const Words& settings, const std::string& place,
+                          const std::string& what) {
+        wall(more);
+        Words words{"scene.toml", "-o", "a.exr"};
+        for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+        refuses(render(words), 2, {"eikonal-trace: " + place + ": " + what});
+        words.insert(words.begin(), "--scene");
+        words.insert(words.begin(), "map");
+        refused(run(words), 2, {"eikonal: " + place + ": " + what});
+    };
+    const std::string many = "[[medium]]\ntype = \"blobs\"\nsource = [{rate = 1, lifetime = 5},\n{rate = 1e6, lifetime = 100}]\n";
+    both(many, {}, "scene.toml:6", "medium.0.source.1.rate = ");
+    both(many, {"medium.0.source.1.rate=2e6"}, "--set medium.0.source.1.rate=2e6", "medium.0.source.1.rate = ");
+    // Of keys that are left out: what they belong to.
+    both("[[medium]]\ntype = \"surface\"\n", {"camera.position=[0,-2,0]"}, "scene.toml:3", "medium.0.origin: ");
+    both(kSurface, {"camera.position=[0,-2,0]"}, "scene.toml:5", "medium.0.origin: ");
+    both(kSurface, {"medium.0.origin=[0,7,0]"}, "--set medium.0.origin=[0,7,0]", "medium.0.origin: ");
+}
+
+TEST_F(Trace, RaysThatGetNowhereAreToldAndCostLittle) {
     wall("[[medium]]\ntype = \"profile\"\nprofile = \"rod\"\ng = 1e6\n");
     const Words large{"--set", "camera.resolution=[1920,1080]"};
     Words words{"scene.toml", "-o", "a.exr", "--explain"};
@@ -152,16 +176,48 @@ TEST_F(Trace, RaysThatDoNotEndAreToldBeforeTheyCostHours) {
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     EXPECT_EQ(explained.status, 0) << explained.err;
     EXPECT_LT(took.count(), 60);  // hours, if nothing stopped it
-    EXPECT_NE(explained.out.find("did not end within 2000 steps"), std::string::npos) << explained.out;
-    EXPECT_NE(explained.out.find("--step-budget"), std::string::npos) << explained.out;
+    EXPECT_NE(explained.out.find("tried go round and round or hardly on"), std::string::npos) << explained.out;
+    // What is not known is not said to be nothing.
+    EXPECT_NE(explained.out.find("displacement: unknown, none of the "), std::string::npos) << explained.out;
+    EXPECT_EQ(explained.out.find("0 px"), std::string::npos) << explained.out;
     EXPECT_EQ(names(), Words{"scene.toml"});
     const Ended rendered = render({"scene.toml", "-o", "a.exr", "--samples", "1", "--set", "camera.resolution=[4,3]"});
     EXPECT_EQ(rendered.status, 0) << rendered.err;
-    EXPECT_NE(rendered.err.find("of 64 rays tried did not end within 2000 steps"), std::string::npos) << rendered.err;
+    EXPECT_NE(rendered.err.find("warning: 64 of 64 rays tried go round and round or hardly on"), std::string::npos)
+        << rendered.err;
+    EXPECT_NE(rendered.err.find("warning: 12 of 12 pixels hold rays that go round"), std::string::npos) << rendered.err;
+    // Air of absurd strength: a picture is a matter of seconds, as it is in usual air.
+    wall(
+        "[[medium]]\ntype = \"turbulence\"\nform = \"lattice\"\nlattice = [32, 32, 32, 4]\n"
+        "period = [1, 1, 1, 1]\nouter_scale = 0.5\ncn2 = 1e12\n");
+    const Ended absurd = render({"scene.toml", "-o", "c.exr", "--samples", "16"});
+    EXPECT_NE(absurd.err.find("warning: 64 of 64 rays tried go round"), std::string::npos) << absurd.err;
+    EXPECT_LT(absurd.seconds, 60);  // a quarter of an hour, if only the budget ended them
     // Usual air is rendered without a word.
     wall(kSurface);
     const Ended usual = render({"scene.toml", "-o", "b.exr", "--samples", "1"});
     EXPECT_EQ(usual.err.find("warning"), std::string::npos) << usual.err;
+}
+
+TEST_F(Trace, RaysThatHaveAWayToGoAreNotWarnedOf) {
+    const std::string fine =
+        "[[medium]]\ntype = \"turbulence\"\nform = \"lattice\"\nlattice = [32, 32, 32, 4]\n"
+        "period = [0.2, 0.2, 0.2, 1]\nouter_scale = 0.1\ncn2 = 1e-13\n";
+    wall(fine);
+    const Words few{"--samples", "1", "--set", "camera.resolution=[8,6]", "--overwrite"};
+    const auto with = [&](Words words) {
+        words.insert(words.end(), few.begin(), few.end());
+        return render(words);
+    };
+    const Ended ended = with({"scene.toml", "-o", "a.exr"});
+    EXPECT_EQ(ended.err.find("warning"), std::string::npos) << ended.err;
+    const Pixels picture = read("a.exr");
+    EXPECT_GT(picture.at(4, 3, picture.channel("steps")), 2000) << "too short a way for this test";
+    // Where they cannot get there the budget is named, before and after.
+    const Ended cut = with({"scene.toml", "-o", "a.exr", "--step-budget", "2100"});
+    EXPECT_NE(cut.err.find("warning: 64 of 64 rays tried will use up their 2100 steps"), std::string::npos) << cut.err;
+    EXPECT_NE(cut.err.find("48 of 48 pixels hold rays that the step budget ended (id -3"), std::string::npos)
+        << cut.err;
 }
 
 TEST_F(Trace, ACameraWithinAClosedMeshIsPointedOut) {
@@ -179,9 +235,30 @@ TEST_F(Trace, ACameraWithinAClosedMeshIsPointedOut) {
     EXPECT_TRUE(said("camera.position=[0, 0, 0]"));
     EXPECT_TRUE(said("camera.position=[0.9, -0.3, 0.5]"));
     EXPECT_FALSE(said("camera.position=[0, 0, 3]"));
-    // A face is missing: not closed.
-    write_text("box.obj", "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nf 1 2 3 4\n");
-    EXPECT_FALSE(said("camera.position=[0, 0, 0]"));
+    // Written face by face, with corners of their own.
+    std::string corners;
+    const int box[6][4] = {{1, 2, 3, 4}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}};
+    for (const auto& face : box) {
+        for (const int k : face)
+            corners += std::string("v ") + (k % 4 < 2 ? "-" : "") + "1 " + ((k - 1) % 4 < 2 ? "-1 " : "1 ") +
+                       (k < 5 ? "-1\n" : "1\n");
+        corners += "f -4 -3 -2 -1\n";
+    }
+    write_text("box.obj", corners);
+    EXPECT_TRUE(said("camera.position=[0.9, -0.3, 0.5]"));
+    // Beside a sheet that is none of it.
+    write_text("box.obj", corners + "v -9 -9 -9\nv 9 -9 -9\nv 9 9 -9\nf -3 -2 -1\n");
+    EXPECT_TRUE(said("camera.position=[0.9, -0.3, 0.5]"));
+    EXPECT_FALSE(said("camera.position=[0, 0, -8.9999]"));
+    // A face is missing: not closed, though most ways out pass one.
+    write_text("box.obj",
+               "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+               "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 4 1 5 8\n");
+    for (const char* place : {"[0, 0, 0]", "[-0.9, 0, 0]", "[-0.99, 0.99, 0.99]", "[0.9, 0, 0]"})
+        EXPECT_FALSE(said(std::string("camera.position=") + place)) << place;
+    // The same, two-sided.
+    write_text("box.obj", bytes("box.obj") + "f 4 3 2 1\nf 8 7 6 5\nf 5 6 2 1\nf 7 8 4 3\nf 8 5 1 4\n");
+    EXPECT_FALSE(said("camera.position=[-0.9, 0, 0]"));
 }
 
 TEST_F(Trace, RaysWithoutIndexAreReportedAndBlack) {
@@ -277,8 +354,8 @@ TEST_F(Trace, AnInterruptLeavesNothingUnfinished) {
         EXPECT_EQ(names(), Words{"scene.toml"});
     };
     interrupt({"--samples", "256", "--set", "camera.resolution=[640,480]"});
-    // Rays that go round for ever: within the first.
-    wall("[[medium]]\ntype = \"profile\"\nprofile = \"fish-eye\"\nradius = 0.01\n");
+    // Rays that take hours: within the first.
+    wall("[[medium]]\ntype = \"profile\"\nprofile = \"rod\"\ng = 1e6\n");
     interrupt({"--samples", "1", "--step-budget", "1000000000", "--tolerance", "1e-6"});
     // The sun's rays, before the first tile.
     wall(kBlob + "[light]\n");

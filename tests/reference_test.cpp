@@ -348,9 +348,9 @@ TEST_F(ReferenceTest, BadScenesNameWhatIsWrong) {
                       {"lib.obj", "gone.mtl"});
     ObjectSpec plane;
     plane.texture = folder_ / "gone.png";
-    expect_user_error([&] { Renderer(scene_with({plane}), straight(1)); }, {"scene.toml", "gone.png"});
+    expect_user_error([&] { Renderer(scene_with({plane}), straight(1)); }, {"object.0.texture: ", "gone.png"});
     plane.texture = write("broken.png", "not a picture");
-    expect_user_error([&] { Renderer(scene_with({plane}), straight(1)); }, {"scene.toml", "broken.png"});
+    expect_user_error([&] { Renderer(scene_with({plane}), straight(1)); }, {"object.0.texture: ", "broken.png"});
     Scene sky = scene_with({ObjectSpec{}});
     sky.background.image = folder_ / "gone.exr";
     expect_user_error([&] { Renderer(sky, straight(1)); }, {"background.image", "gone.exr"});
@@ -375,6 +375,29 @@ TEST_F(ReferenceTest, NumbersOfAMeshThatAreNoneNameTheirLine) {
     }
     expect_user_error([&] { read_mesh(write("short.obj", good + "v 1 2\n"), 1, dvec3(0)); },
                       {"short.obj:7: v needs 3 numbers and has 2"});
+}
+
+TEST_F(ReferenceTest, IndicesOfAMeshThatAreNoneNameTheirLine) {
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 1\nvn 0 0 1\n";
+    for (const char* face : {"f 1 2 3", "f -3 -2 -1", "f 1/1 2/1 3/1", "f 1//1 2//1 3//-1", "f 1/1/1 2/1/1 3/-1/1\r"})
+        EXPECT_EQ(read_mesh(write("good.obj", corners + face + "\n"), 1, dvec3(0)).triangles.size(), 1u) << face;
+    EXPECT_EQ(read_mesh(write("good.obj", "f 1 2 3\n" + corners), 1, dvec3(0)).triangles.size(), 1u);
+    for (const std::string corner : {"3.7", "3x", "x", "0", "1/0", "2147483648", "99999999999999999999", "-2147483649",
+                                     "4294967297", "1/", "1//", "1/1/", "/1", "1/1/1/1", "1e0", "+3"})
+        expect_user_error([&] { read_mesh(write("bad.obj", corners + "f 1 2 " + corner + "\n"), 1, dvec3(0)); },
+                          {"bad.obj:6: f: '" + corner + "' is no corner"});
+    const std::pair<const char*, const char*> outside[] = {{"4", "no v 4, the file has 3"},
+                                                           {"-4", "no v -4, the file has 3 before it"},
+                                                           {"2147483647", "no v 2147483647"},
+                                                           {"1/2", "no vt 2, the file has 1"},
+                                                           {"1/-2", "no vt -2"},
+                                                           {"1//2", "no vn 2"},
+                                                           {"1/1/-2147483648", "no vn -2147483648"}};
+    for (const auto& [corner, what] : outside)
+        expect_user_error([&] { read_mesh(write("bad.obj", corners + "f 1 2 " + corner + "\n"), 1, dvec3(0)); },
+                          {"bad.obj:6: f: ", what});
+    expect_user_error([&] { read_mesh(write("bad.obj", "v 0 0 0\nf -1 -2 -3\nv 1 0 0\nv 0 1 0\n"), 1, dvec3(0)); },
+                      {"bad.obj:2: f: ", "no v -2, the file has 1 before it"});
 }
 
 // A slab of thickness t, met at the angle θ, shifts a ray sideways by t sin θ (1 - cos θ/√(n² - sin² θ)) and leaves its

@@ -248,6 +248,124 @@ TEST(ChooseModel, StatesWhatTheWholeMapIsOffBy) {
     EXPECT_NEAR(stated.p50 / all.p50, 1, 0.35);
 }
 
+Scene surface_scene(double temperature, double dropoff) {
+    Scene scene = view(0.5);
+    SurfaceSpec spec;
+    spec.surface_temperature = temperature;
+    spec.dropoff = dropoff;
+    scene.media = {spec};
+    return scene;
+}
+
+// A surface alone is bent in closed form, and the rays that judge it are as exact.
+TEST(StatedError, SayThatALoneSurfaceIsExact) {
+    for (const Scene& scene : {surface_scene(270, 3), surface_scene(310, 1)}) {
+        StatedError stated;
+        const std::vector<float> uv = map_of(scene, settings_for(5000), std::nullopt, 5000, &stated);
+        EXPECT_GT(rms(uv), 30);
+        EXPECT_LT(stated.p95, 2e-5 * rms(uv));
+        const ModelChoice choice =
+            choose_model(scene, settings_for(5000), 0.01, true, [](const Displacer&) { return 1.0; });
+        EXPECT_TRUE(choice.exact && choice.within) << choice.p95;
+    }
+}
+
+// Where the depth buffer has a hole in the heated ground, rays go on through the plane, which a map ends them on:
+// refracted by n cosθ = const.
+TEST(StatedError, KnowOfHolesInTheGround) {
+    const Scene scene = [] {
+        Scene s = surface_scene(330, 0.02);
+        s.camera.horizontal_fov = 10;
+        return s;
+    }();
+    const Displacer displacer(scene, settings_for(5000));
+    const Camera camera = displacer.camera(1);
+    const auto stated = [&](bool hole) {
+        std::vector<float> metres(kWindow.area(), 5000);
+        for (int y = kHeight / 2; y < kHeight && !hole; ++y) {
+            const double below = -camera.slope(0, y + 0.5).y;
+            std::fill_n(metres.begin() + y * kWidth, kWidth, static_cast<float>(std::min(5000.0, 1.5 / below)));
+        }
+        const DepthPlane plane(kWindow, std::move(metres));
+        const Displacer::Instant instant = displacer.at(1, plane.nearest(), plane.farthest());
+        const PixelWindow rows{0, kHeight - 24, kWidth, 2};
+        std::vector<float> uv(2 * rows.area());
+        instant.map(rows, &plane, DepthMeeting::March, uv.data());
+        return instant.stated_error(rows, &plane, DepthMeeting::March, uv.data()).p50;
+    };
+    const double slope = -camera.slope(0, kHeight - 23).y, cosine = 1 / std::sqrt(1 + slope * slope);
+    const SurfaceLayer layer(std::get<SurfaceSpec>(scene.media[0]), index_law(scene.optics));
+    const double turned = cosine * (1 - layer.above_ambient(0));  // n is near 1
+    const double below = std::sqrt(1 - turned * turned) / turned;
+    EXPECT_NEAR(stated(true), camera.f_px * (slope - below), 0.1 * camera.f_px * (slope - below));
+    EXPECT_LT(stated(false), 1e-3);
+}
+
+// What is farther than the background is where its depth says, and media between the two are there.
+TEST(StatedError, HoldBeyondFar) {
+    struct Case {
+        Scene scene;
+        double far, depth;
+    };
+    for (const Case& c : {Case{blob_scene(100), 5, 40}, Case{lattice_scene(false), 0.5, 2}}) {
+        const DepthPlane plane(kWindow, std::vector<float>(kWindow.area(), static_cast<float>(c.depth)));
+        const auto map = [&](double far, double deepest) {
+            DisplacerSettings settings = settings_for(far);
+            settings.deepest = deepest;
+            const Displacer displacer(c.scene, settings);
+            EXPECT_EQ(displacer.models().size(), 1U);
+            EXPECT_TRUE(displacer.beyond_far(c.depth).empty());
+            std::vector<float> uv(2 * kWindow.area());
+            const Displacer::Instant instant = displacer.at(1, c.depth, c.depth);
+            instant.map(kWindow, &plane, DepthMeeting::March, uv.data());
+            return std::pair{uv, instant.stated_error(kWindow, &plane, DepthMeeting::March, uv.data()).p95};
+        };
+        const auto [beyond, error] = map(c.far, 1e9);
+        const auto [within, same] = map(c.depth, 0);
+        EXPECT_EQ(beyond, within);
+        EXPECT_EQ(error, same);
+        EXPECT_LT(error, 0.2 * rms(beyond));
+    }
+    DisplacerSettings settings = settings_for(100);
+    settings.deepest = 1e9;
+    const Displacer screens(screen_scene(2e-13), settings);
+    EXPECT_TRUE(screens.beyond_far(static_cast<float>(100)).empty());
+    ASSERT_EQ(screens.beyond_far(101).size(), 1U);
+    EXPECT_NE(screens.beyond_far(101)[0].find("thin screens"), std::string::npos);
+}
+
+// Blobs aside of the picture are left out, unless pixels are asked for there.
+TEST(MediaLayers, LeaveOutBlobsAside) {
+    Scene scene = view();
+    BlobsSpec blobs;
+    blobs.blobs = {{{4, 1.5, -10}, 0.1, 900}};  // half the picture's width beyond its right edge
+    scene.media = {blobs};
+    DisplacerSettings settings = settings_for(40);
+    const Displacer without(scene, settings);
+    EXPECT_TRUE(without.models().empty());
+    ASSERT_FALSE(without.notes().empty());
+    EXPECT_NE(without.notes()[0].find("medium.0: left out"), std::string::npos) << without.notes()[0];
+    settings.overscan = [] { return PixelWindow{-kWidth, -kHeight, 3 * kWidth, 3 * kHeight}; };
+    EXPECT_EQ(Displacer(scene, settings).models().size(), 1U);
+}
+
+// A model is taken with the margin to spare, and one that should suffice is known.
+TEST(ChooseModel, KeepsAMargin) {
+    const Scene scene = blob_scene(300);
+    const auto one = [](const Displacer&) { return 1.0; };
+    const ModelChoice loose = choose_model(scene, settings_for(40), 100, true, one);
+    EXPECT_EQ(loose.model, Model::FirstOrder);
+    const double sure = 1.001 * kChoiceMargin * loose.p95, tight = 0.999 * kChoiceMargin * loose.p95;
+    EXPECT_EQ(choose_model(scene, settings_for(40), sure, true, one).model, Model::FirstOrder);
+    EXPECT_EQ(choose_model(scene, settings_for(40), tight, true, one).model, Model::SecondOrder);
+    const auto better = [&](double tolerance, Model model) {
+        return sufficient_model(scene, settings_for(40), tolerance, true, one, model, loose.p95);
+    };
+    EXPECT_EQ(better(0.9 * loose.p95, Model::FirstOrder), Model::SecondOrder);
+    EXPECT_FALSE(better(1e-9, Model::FirstOrder));
+    EXPECT_FALSE(better(0.9 * loose.p95, Model::SecondOrder));
+}
+
 TEST(ChooseModel, RefusesWhatNoModelTakes) {
     Scene scene = view();
     scene.media = {ProfileSpec{}};

@@ -82,7 +82,7 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
     }
     const std::optional<double> range_far =
         a.range ? std::optional(std::max((*a.range)[0], (*a.range)[1])) : std::nullopt;
-    far_is_stated_ = a.far || range_far;
+    limited_ = a.far || range_far || !a.depth;
     far_in_scene_ = plate.far.has_value();
     if (a.far)
         far_ = *a.far;
@@ -157,8 +157,7 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
     DepthBuffer buffer = inside_input_ ? depth_from_picture(*input, input_file, options_, data, display)
                                        : read_depth(files_->at(frame), options_, data, display);
     remarks.insert(remarks.end(), buffer.remarks.begin(), buffer.remarks.end());
-    const auto far = static_cast<float>(far_);
-    std::size_t beyond = 0;
+    const auto deepest = static_cast<float>(this->deepest());
     for (int y = 0; y < data.height; ++y)
         for (int x = 0; x < data.width; ++x) {
             float& z = buffer.metres[static_cast<std::size_t>(y) * static_cast<std::size_t>(data.width) +
@@ -167,16 +166,8 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
                 const dvec2 s = camera.slope(data.x0 - display.x0 + x + 0.5, data.y0 - display.y0 + y + 0.5);
                 z = static_cast<float>(z / std::sqrt(1 + s.x * s.x + s.y * s.y));
             }
-            if (z > far) ++beyond;
-            z = std::max(std::min(z, far), std::min(kNearestDepth, far));
+            z = std::max(std::min(z, deepest), std::min(kNearestDepth, deepest));
         }
-    // in inverse depth, whatever is far is about as good as background
-    if (beyond > 0 && !far_is_stated_ && options_.type != DepthType::Inverse)
-        remarks.push_back(
-            {"depth_far", fmt::format("'{}': {} of {} pixels are beyond {} {:g} m and move as if at "
-                                      "it; say with --far how far the background is",
-                                      (inside_input_ ? input_file : files_->at(frame)).string(), beyond, data.area(),
-                                      far_in_scene_ ? "the scene's plate.far =" : "the default --far", far_)});
     return {seen_from(data, display), std::move(buffer.metres)};
 }
 

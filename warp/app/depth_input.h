@@ -33,9 +33,13 @@ class DepthInput {
     /// Decides the source. UserError: ill-formed values, nothing that tells a distance, options without effect.
     DepthInput(const DepthArguments& arguments, const PlateSpec& plate);
 
-    /// Greatest distance of the shot [m]: --far, else the map's range, the constant distance, the scene's, or
-    /// kDefaultFar.
+    /// Distance of the background [m]: --far, else the map's range, the constant distance, the scene's, or kDefaultFar.
     double far() const { return far_; }
+    /// What no depth is beyond [m]: far(), or kInfiniteDepth where a map in metres, or in 1/metres, tells the depth and
+    /// no --far limits it.
+    double deepest() const { return limited_ ? far_ : std::max<double>(far_, kInfiniteDepth); }
+    /// Where far() comes from, for messages.
+    std::string_view far_name() const { return far_in_scene_ ? "the scene's plate.far =" : "the default --far"; }
     /// Whether one distance holds for all pixels.
     std::optional<double> constant() const { return constant_; }
     /// The depth map's files; empty if there is none or it is a channel of INPUT.
@@ -44,9 +48,8 @@ class DepthInput {
     /// One line for --verbose.
     std::string description() const;
 
-    /// Axial depth on `data`, limited to far(), as the camera sees it (seen_from). `input`: the frame's picture, where
-    /// the map is a channel of it (or null). Remarks, beside those of the map: pixels in metres beyond a far() that
-    /// no option stated; ground that is nowhere seen.
+    /// Axial depth on `data`, limited to deepest(), as the camera sees it (seen_from). `input`: the frame's picture,
+    /// where the map is a channel of it (or null). Remarks, beside those of the map: ground that is nowhere seen.
     DepthPlane plane(int frame, const Picture* input, const std::filesystem::path& input_file, const PixelWindow& data,
                      const PixelWindow& display, const Camera& camera, std::vector<Remark>& remarks) const;
 
@@ -63,7 +66,7 @@ class DepthInput {
 
     DepthOptions options_;
     double far_;
-    bool far_is_stated_, far_in_scene_;
+    bool limited_, far_in_scene_;
     std::optional<double> constant_;
     std::optional<FilePattern> files_;
     std::optional<Ground> ground_;

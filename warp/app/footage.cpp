@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "noise/error.h"
+#include "warp/app/depth_input.h"
 
 namespace eikonal {
 namespace {
@@ -75,6 +76,26 @@ Picture first_header(const FilePattern& files, const std::vector<int>& frames) {
         }
     }
     throw FrameError(*failure);
+}
+
+PixelWindow pixels_of(const Footage& footage) {
+    int left = 0, top = 0, right = footage.display.width, bottom = footage.display.height;
+    std::vector<int> frames = footage.frames;
+    if (footage.kind == FootageKind::Movie) frames.clear();
+    if (footage.kind == FootageKind::Still) frames.assign(1, 1);
+    for (const int frame : frames) {
+        try {
+            const Part part = read_picture_header(footage.files.at(frame)).parts.front();
+            const PixelWindow data = seen_from(data_window(part), display_window(part));
+            left = std::min(left, data.x0);
+            top = std::min(top, data.y0);
+            right = std::max(right, data.x0 + data.width);
+            bottom = std::max(bottom, data.y0 + data.height);
+        } catch (const FrameError&) {
+            // told when its turn comes
+        }
+    }
+    return {left, top, right - left, bottom - top};
 }
 
 Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int still) {

@@ -37,6 +37,10 @@ struct Footage {
 /// is, if none is wanted. FrameError: none found, unreadable (names the frame). UserError: a folder, an empty name.
 Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int still);
 
+/// The pixels that any frame there is has, overscan included, from the display window's corner: of pictures, their data
+/// windows. Reads the header of every file; what cannot be read counts as the display window.
+PixelWindow pixels_of(const Footage& footage);
+
 /// The header of the first of `frames` (at least one) whose file can be read; if none can, FrameError names the first.
 Picture first_header(const FilePattern& files, const std::vector<int>& frames);
 

@@ -10,7 +10,9 @@
 #include "noise/error.h"
 #include "warp/app/commands.h"
 #include "warp/app/pipeline.h"
+#include "warp/app/shot.h"
 #include "warp/image/interrupt.h"
+#include "warp/scene/scene_place.h"
 
 namespace {
 
@@ -20,12 +22,25 @@ void keep_freed_memory() {
     mallopt(M_TRIM_THRESHOLD, -1);
 }
 
+/// Runs a command; messages on its scene come to name file and line.
+template <class Options>
+int run_command(const Options& options) {
+    using namespace eikonal;
+    try {
+        return run(options);
+    } catch (const UserError& error) {
+        if constexpr (requires { options.scene.settings; })
+            throw UserError(with_place(error.what(), scene_file_of(options.scene), options.scene.settings));
+        throw;
+    }
+}
+
 int run_program(int argc, char** argv) {
     using namespace eikonal;
     constexpr int kFrameFailed = 1, kWrongUsage = 2;
     try {
         catch_interrupts("eikonal");
-        return std::visit([](const auto& options) { return run(options); }, parse_options(argc, argv));
+        return std::visit([](const auto& options) { return run_command(options); }, parse_options(argc, argv));
     } catch (const UserError& error) {
         fmt::print(stderr, "eikonal: {}\n", error.what());
         return kWrongUsage;

@@ -193,7 +193,7 @@ void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
                    "flat ground: camera height [m] and the horizon's row from the top, in pixels or as 55%")
         ->type_name("HEIGHT,HORIZON");
     add_number(app, "--far", o.far, "M",
-               fmt::format("distance of the background (default: the scene's, else {:g})", kDefaultFar), kLengths,
+               fmt::format("distance of the background (default: the scene's, else {:g}); limits depth", kDefaultFar), kLengths,
                is_length);
     add_choice(app, "--depth-meeting", o.meeting, kMeetings,
                "how a bent ray meets the depth map: followed to the first surface (default), iterated, or the pixel's "

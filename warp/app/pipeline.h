@@ -38,7 +38,7 @@ inline constexpr std::string_view kInterrupted = "interrupted";
 struct RunResult {
     std::vector<FrameRecord> records;  ///< in order
     bool interrupted = false;
-    std::vector<std::string> warnings;  ///< on the frames' files, told once each
+    std::vector<std::string> warnings;  ///< on the frames and their files, told once each
     bool failed() const;
 };
 

@@ -24,10 +24,12 @@ std::optional<std::string> tolerance_warning(const Shot& shot, const RunResult& 
     const auto beyond = std::count_if(result.records.begin(), result.records.end(), [&](const FrameRecord& r) {
         return r.stated && r.stated->p95 > *shot.tolerance();
     });
+    const std::optional<Model> better = shot.sufficient_model(worst->stated->p95);
     return fmt::format(
-        "--tolerance {:g}: {} of {} frames go beyond it, frame {} by most: {:.2g} px in 95 of 100 sampled "
-        "pixels; eikonal-trace render follows the rays truly",
-        *shot.tolerance(), beyond, result.records.size(), worst->frame, worst->stated->p95);
+        "--tolerance {:g}: {} of {} frames go beyond it, frame {} by most: {:.2g} px in 95 of 100 sampled pixels; {}",
+        *shot.tolerance(), beyond, result.records.size(), worst->frame, worst->stated->p95,
+        better ? fmt::format("--model {} should keep within it", name_of(*better))
+               : "eikonal-trace render follows the rays truly");
 }
 
 nlohmann::ordered_json choice_json(const ModelChoice& choice) {
@@ -47,14 +49,17 @@ nlohmann::ordered_json choice_json(const ModelChoice& choice) {
 
 }  // namespace
 
-void tell_errors(const Shot& shot, const RunResult& result, bool verbose) {
+void tell_errors(const Shot& shot, RunResult& result, bool verbose) {
     if (const FrameRecord* worst = worst_frame(result); worst != nullptr && verbose)
         fmt::print(
             stderr,
             "eikonal: stated error: 95 of 100 of {} sampled pixels are off by {:.2g} px at most, half of them by "
             "{:.2g} px (frame {}, the worst)\n",
             worst->stated->samples, worst->stated->p95, worst->stated->p50, worst->frame);
-    if (const auto warning = tolerance_warning(shot, result)) fmt::print(stderr, "eikonal: warning: {}\n", *warning);
+    if (const auto warning = tolerance_warning(shot, result)) {
+        fmt::print(stderr, "eikonal: warning: {}\n", *warning);
+        result.warnings.push_back(*warning);
+    }
 }
 
 void write_report(const std::filesystem::path& file, const Shot& shot, const RunResult& result, std::size_t kept) {
@@ -70,7 +75,6 @@ void write_report(const std::filesystem::path& file, const Shot& shot, const Run
     json["notes"] = shot.notes();
     json["warnings"] = shot.warnings();
     for (const std::string& warning : result.warnings) json["warnings"].push_back(warning);
-    if (const auto warning = tolerance_warning(shot, result)) json["warnings"].push_back(*warning);
     if (shot.tolerance()) json["tolerance_px"] = *shot.tolerance();
     if (shot.choice() != nullptr) json["model_choice"] = choice_json(*shot.choice());
     json["interrupted"] = result.interrupted;

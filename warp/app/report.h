@@ -9,8 +9,8 @@
 namespace eikonal {
 
 /// Tells on stderr that frames are off by more than the shot's tolerance and, if `verbose`, by how much they are off
-/// at all.
-void tell_errors(const Shot& shot, const RunResult& result, bool verbose);
+/// at all. What is told goes to the result's warnings.
+void tell_errors(const Shot& shot, RunResult& result, bool verbose);
 
 /// Writes frames (rms and largest displacement and stated error in px,
 /// seconds, error), models and how they were chosen, gain, expected rms, notes and warnings.

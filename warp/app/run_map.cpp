@@ -41,7 +41,7 @@ int run(const MapOptions& options) {
     std::vector<int> frames =
         options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{scene.time.first_frame};
     const PixelWindow display = choose_display(scene, options.depth, frames);
-    Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {},
+    Shot shot(std::move(scene), options.scene, options.depth, options.strength, display, 1, {}, {},
               options.run.states_errors());
     outputs.check(frames, shot.companions());
     shot.tell(frames, options.run.verbose);

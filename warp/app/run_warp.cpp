@@ -300,8 +300,10 @@ int run(const WarpOptions& options) {
     for (const std::string& note : footage.notes) fmt::print(stderr, "eikonal: warning: {}\n", note);
     bool hole = false;
     std::vector<int> frames = choose_frames(options, footage, wanted, still, hole);
-    Shot shot(std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
-              footage.fps ? std::optional(footage.fps->value()) : std::nullopt, options.run.states_errors());
+    Shot shot(
+        std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
+        footage.fps ? std::optional(footage.fps->value()) : std::nullopt, [&] { return pixels_of(footage); },
+        options.run.states_errors());
     std::vector<NamedFiles> inputs = shot.companions();
     inputs.push_back({"the input", footage.files, footage.kind == FootageKind::Movie});
     outputs.check(frames, inputs);

@@ -11,15 +11,18 @@
 
 namespace eikonal {
 
+std::filesystem::path scene_file_of(const SceneOptions& options) {
+    return options.scene ? *options.scene : find_preset(options.preset.value_or("gentle"));
+}
+
 Scene load_scene(const SceneOptions& options) {
-    const std::filesystem::path file = options.scene ? *options.scene : find_preset(options.preset.value_or("gentle"));
-    return read_scene(file, options.settings, options.seed);
+    return read_scene(scene_file_of(options), options.settings, options.seed);
 }
 
 namespace {
 
 /// What the displacement is to be multiplied by.
-double gain_of(const Displacer& displacer, const StrengthOptions& strength, double far) {
+double gain_for(const Displacer& displacer, const StrengthOptions& strength, double far) {
     if (!strength.rms) return strength.gain;
     const double natural = displacer.expected_rms(far);
     if (natural == 0 && *strength.rms > 0)
@@ -68,35 +71,37 @@ std::string describe(const ModelChoice& choice, double tolerance) {
 }  // namespace
 
 Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments& depth, const StrengthOptions& strength,
-           const PixelWindow& display, double pixel_aspect, std::optional<double> fps, bool state_errors)
+           const PixelWindow& display, double pixel_aspect, std::optional<double> fps,
+           const std::function<PixelWindow()>& overscan, bool state_errors)
     : scene_(std::move(scene)),
       depth_(depth, scene_.plate),
+      strength_(strength),
       meeting_(depth.meeting.value_or(DepthMeeting::March)),
       display_(display),
       fps_(scene_.time.fps.value_or(fps.value_or(kDefaultFps))),
       tolerance_(strength.tolerance),
       state_errors_(state_errors || strength.tolerance || strength.model.automatic) {
-    DisplacerSettings settings;
-    settings.width = display.width;
-    settings.height = display.height;
-    settings.pixel_aspect = pixel_aspect;
-    settings.fps = fps_;
-    settings.fov = scene_options.fov;
-    settings.far = depth_.far();
-    settings.model = strength.model.model;
-    settings.sample_errors = state_errors_;
-    settings.cancelled = interrupted;
+    settings_.width = display.width;
+    settings_.height = display.height;
+    settings_.pixel_aspect = pixel_aspect;
+    settings_.fps = fps_;
+    settings_.fov = scene_options.fov;
+    settings_.far = depth_.far();
+    settings_.deepest = depth_.deepest();
+    settings_.overscan = overscan;
+    settings_.model = strength.model.model;
+    settings_.sample_errors = state_errors_;
+    settings_.cancelled = interrupted;
     // --rms makes the weakest visible
-    settings.negligible = strength.rms || strength.gain == 0 ? 0 : kNegligibleShift / std::abs(strength.gain);
-    const auto gain = [&](const Displacer& displacer) { return gain_of(displacer, strength, depth_.far()); };
+    settings_.negligible = strength.rms || strength.gain == 0 ? 0 : kNegligibleShift / std::abs(strength.gain);
     if (strength.model.automatic || (strength.tolerance && !strength.model.model)) {
         if (!tolerance_) tolerance_ = kDefaultTolerance;
-        choice_ = choose_model(scene_, settings, *tolerance_, depth_.constant().has_value(), gain);
+        choice_ = choose_model(scene_, settings_, *tolerance_, depth_.constant().has_value(), gain_of());
         displacer_ = std::move(choice_->displacer);
     } else {
-        displacer_ = std::make_unique<Displacer>(scene_, settings);
+        displacer_ = std::make_unique<Displacer>(scene_, settings_);
     }
-    gain_ = gain(*displacer_);
+    gain_ = gain_of()(*displacer_);
     if (strength.mask) {
         const FileChannel split = split_channel(*strength.mask);
         if (split.file.empty())
@@ -105,6 +110,17 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
         mask_ = FilePattern::parse(split.file);
         mask_channel_ = split.channel;
     }
+}
+
+GainOf Shot::gain_of() const {
+    return [this](const Displacer& displacer) { return gain_for(displacer, strength_, depth_.far()); };
+}
+
+std::optional<Model> Shot::sufficient_model(double p95) const {
+    if (displacer_->models().empty()) return {};
+    const Model model = choice_ ? choice_->model : strength_.model.model.value_or(Model::SecondOrder);
+    return eikonal::sufficient_model(scene_, settings_, *tolerance_, depth_.constant().has_value(), gain_of(), model,
+                                     p95);
 }
 
 double Shot::frame_bytes(double pixel_bytes) const {
@@ -116,12 +132,16 @@ void Shot::tell(const std::vector<int>& frames, bool verbose) {
     if (scene_.media.empty()) warnings_.push_back("the scene has no medium: nothing moves");
     if (gain_ != 0)
         for (std::string& line : flat_lattices(scene_)) warnings_.push_back(std::move(line));
-    if (choice_ && !choice_->within)
+    if (choice_ && choice_->p95 > *tolerance_)
         warnings_.push_back(
-            fmt::format("--tolerance {:g}: no model stays within it; {} is used, off by up to {:.2g} px in 95 of 100 "
-                        "sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render follows "
-                        "the rays truly",
-                        *tolerance_, name_of(choice_->model), choice_->p95, focusing_variance()));
+            choice_->exact
+                ? fmt::format("--tolerance {:g}: 95 of 100 sampled pixels are off by up to {:.2g} px, and no medium of "
+                              "this scene takes a model; eikonal-trace render follows the rays truly",
+                              *tolerance_, choice_->p95)
+                : fmt::format("--tolerance {:g}: no model stays within it; {} is used, off by up to {:.2g} px in 95 of "
+                              "100 sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render "
+                              "follows the rays truly",
+                              *tolerance_, name_of(choice_->model), choice_->p95, focusing_variance()));
     const bool first_order =
         displacer_->models().empty() || displacer_->models().front() != name_of(Model::SecondOrder);
     if (std::abs(gain_) > 1 && first_order)
@@ -233,6 +253,11 @@ Shot::Maps Shot::maps(int frame, const std::vector<double>& offsets, const Pictu
         }
         result.of_instants.push_back(std::move(map));
     }
+    if (const std::vector<std::string> lines = displacer_->beyond_far(farthest); !lines.empty())
+        remarks.push_back(
+            {"depth_far", fmt::format("depth reaches {:g} m, beyond {} {:g} m; {}: say with --far how "
+                                      "far the air and the background reach",
+                                      farthest, depth_.far_name(), depth_.far(), fmt::join(lines, "; "))});
     return result;
 }
 

@@ -1,6 +1,7 @@
 /// A shot made ready: scene read, camera, depth and displacement settled, gain fixed. What `warp` and `map` share.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,14 +16,17 @@
 namespace eikonal {
 
 /// The scene that the options name: a file, a preset, or the preset `gentle`.
+std::filesystem::path scene_file_of(const SceneOptions& options);
 Scene load_scene(const SceneOptions& options);
 
 class Shot {
   public:
-    /// display, pixel_aspect: of the footage. fps: the footage's own, which the scene's overrides. state_errors: maps()
-    /// measures what it makes, which a tolerance asks for, too.
+    /// display, pixel_aspect: of the footage. fps: the footage's own, which the scene's overrides. overscan: the pixels
+    /// that maps() will be asked for, as in DisplacerSettings. state_errors: maps() measures what it makes, which a
+    /// tolerance asks for, too.
     Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments& depth, const StrengthOptions& strength,
-         const PixelWindow& display, double pixel_aspect, std::optional<double> fps, bool state_errors);
+         const PixelWindow& display, double pixel_aspect, std::optional<double> fps,
+         const std::function<PixelWindow()>& overscan, bool state_errors);
 
     const Scene& scene() const { return scene_; }
     const DepthInput& depth() const { return depth_; }
@@ -33,6 +37,9 @@ class Shot {
     double frame_bytes(double pixel_bytes) const;
     DepthMeeting meeting() const { return meeting_; }
     std::optional<double> tolerance() const { return tolerance_; }
+    /// A model that should keep frames within the tolerance which are off by p95 [px]; none if there is none. Worked
+    /// out at each call.
+    std::optional<Model> sufficient_model(double p95) const;
     /// How --model auto has chosen; null otherwise.
     const ModelChoice* choice() const { return choice_ ? &*choice_ : nullptr; }
     /// Expected rms of |d| at far(), gain included [px]. Worked out at each call.
@@ -64,13 +71,17 @@ class Shot {
     std::vector<NamedFiles> companions() const;
 
   private:
+    GainOf gain_of() const;
+
     Scene scene_;
     DepthInput depth_;
+    StrengthOptions strength_;
     DepthMeeting meeting_;
     PixelWindow display_;
     double fps_;
     std::optional<double> tolerance_;
     bool state_errors_;
+    DisplacerSettings settings_;
     std::optional<ModelChoice> choice_;
     std::unique_ptr<Displacer> displacer_;
     double gain_ = 1;

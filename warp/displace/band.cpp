@@ -9,21 +9,9 @@
 namespace eikonal {
 namespace {
 
-constexpr int kBefore = 2, kTaps = 6;  // nodes i-2 … i+3 around position i + f
+constexpr int kTaps = kNodeTaps;
 
 using Weights = std::array<float, kTaps>;
-
-/// Six-point Lagrange weights at fraction f in [0, 1) between nodes 2 and 3.
-Weights lagrange(double f) {
-    Weights w{};
-    for (int i = 0; i < kTaps; ++i) {
-        double v = 1;
-        for (int j = 0; j < kTaps; ++j)
-            if (j != i) v *= (f - (j - kBefore)) / (i - j);
-        w[static_cast<std::size_t>(i)] = static_cast<float>(v);
-    }
-    return w;
-}
 
 Node splat(float a) {
     return Node{a, a, a, a};
@@ -67,6 +55,17 @@ Mix mix_at(const Band& band, double z) {
 
 }  // namespace
 
+std::array<float, kNodeTaps> lagrange_weights(double f) {
+    Weights w{};
+    for (int i = 0; i < kTaps; ++i) {
+        double v = 1;
+        for (int j = 0; j < kTaps; ++j)
+            if (j != i) v *= (f - (j - kTapsBefore)) / (i - j);
+        w[static_cast<std::size_t>(i)] = static_cast<float>(v);
+    }
+    return w;
+}
+
 int node_spacing(double cell_px) {
     const double widest = std::min(kCellsPerNode * cell_px, static_cast<double>(kWidestSpacing));
     int spacing = 1;
@@ -86,7 +85,8 @@ void Band::cover(const PixelWindow& pixels) {
     columns = floor_div(pixels.x0 + pixels.width - 1, spacing) - before() + taps - column0;
     rows = floor_div(pixels.y0 + pixels.height - 1, spacing) - before() + taps - row0;
     weights.resize(static_cast<std::size_t>(spacing));
-    for (int p = 0; p < spacing; ++p) weights[static_cast<std::size_t>(p)] = lagrange(static_cast<double>(p) / spacing);
+    for (int p = 0; p < spacing; ++p)
+        weights[static_cast<std::size_t>(p)] = lagrange_weights(static_cast<double>(p) / spacing);
     pair_weights.clear();
     for (std::size_t p = 0; spacing % 2 == 0 && p < weights.size(); p += 2) {
         auto& pair = pair_weights.emplace_back();
@@ -156,7 +156,7 @@ Node BandRow::node(std::size_t depth, int x) {
     if (cached_x_[depth] == x) return cached_[depth];
     const int base = floor_div(x, band_->spacing);
     const int phase = x - base * band_->spacing;
-    const Node* p = line + base - kBefore;
+    const Node* p = line + base - kTapsBefore;
     const Weights& w = band_->weights[static_cast<std::size_t>(phase)];
     const Node v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] +
                    splat(w[4]) * p[4] + splat(w[5]) * p[5];

@@ -22,7 +22,7 @@
 #include <span>
 #include <vector>
 
-#include "warp/displace/mirage.h"
+#include "warp/displace/mirage_row.h"
 #include "warp/displace/shift.h"
 #include "warp/image/linear_image.h"
 
@@ -45,6 +45,10 @@ inline constexpr double kSpacingError = 0.011;
 /// Largest power of two that keeps to both, for a field whose finest cell is `cell_px` pixels wide on the screen.
 int node_spacing(double cell_px);
 
+/// Nodes i - kTapsBefore … of the interpolant around position i + f, 0 <= f < 1, and their weights: six-point Lagrange.
+inline constexpr int kTapsBefore = 2, kNodeTaps = 6;
+std::array<float, kNodeTaps> lagrange_weights(double f);
+
 /// X.x, X.y, S.x, S.y of one node at one depth; a SIMD register.
 using Node = float __attribute__((vector_size(16)));
 
@@ -64,7 +68,7 @@ struct Band {
     /// Sets the grid that interpolation needs for these (absolute) pixels, and zeroes the nodes. depths must be set.
     void cover(const PixelWindow& pixels);
     /// Nodes that interpolation takes before the one at or before a pixel.
-    int before() const { return spacing > 1 ? 2 : 0; }
+    int before() const { return spacing > 1 ? kTapsBefore : 0; }
     std::size_t index(int grid_row, std::size_t depth, int column = 0) const {
         return (static_cast<std::size_t>(grid_row) * depths.size() + depth) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(column);
@@ -109,13 +113,20 @@ class BandRow {
 /// The rows of several bands (one a medium, each with depths of its own) and mirages whose displacements add up.
 class BandRows {
   public:
-    /// y: absolute pixel row that the bands cover. bands and mirages must outlive this. gain multiplies the mirages'
-    /// displacement; the bands' nodes have theirs.
-    void start(const std::vector<Band>& bands, int y, std::span<const Mirage> mirages = {}, double gain = 1) {
+    /// y: absolute pixel row that the bands cover. bands, mirages and air must outlive this. gain multiplies the
+    /// mirages' displacement; the bands' nodes have theirs. air: what the bands do to the rays of one of the mirages;
+    /// without it they and the mirages add up.
+    void start(const std::vector<Band>& bands, int y, std::span<const Mirage> mirages = {}, double gain = 1,
+               const BentAir* air = nullptr) {
         rows_.resize(bands.size());
         for (std::size_t i = 0; i < bands.size(); ++i) rows_[i].start(bands[i], y);
         mirages_.resize(mirages.size());
-        for (std::size_t i = 0; i < mirages.size(); ++i) mirages_[i].start(mirages[i], y, gain);
+        has_air_ = false;
+        for (std::size_t i = 0; i < mirages.size(); ++i) {
+            const bool bent = air != nullptr && air->belongs_to(mirages[i]) && air->touches(y);
+            has_air_ = has_air_ || bent;
+            mirages_[i].start(mirages[i], y, gain, bent ? air : nullptr);
+        }
     }
     Shift at(int x, double z) {
         Shift sum;
@@ -123,11 +134,20 @@ class BandRows {
             sum.x += d.x;
             sum.y += d.y;
         };
-        for (BandRow& row : rows_) add(row.at(x, z));
+        if (!carried(x))
+            for (BandRow& row : rows_) add(row.at(x, z));
         for (MirageRow& row : mirages_) add(row.at(x, z));
         return sum;
     }
     void add_constant_depth(int x0, int n, double z, float* uv) {
+        if (has_air_) {
+            for (int i = 0; i < n; ++i) {
+                const Shift d = at(x0 + i, z);
+                uv[2 * i] += d.x;
+                uv[2 * i + 1] += d.y;
+            }
+            return;
+        }
         for (BandRow& row : rows_) row.add_constant_depth(x0, n, z, uv);
         for (MirageRow& row : mirages_) row.add_constant_depth(x0, n, z, uv);
     }
@@ -145,8 +165,16 @@ class BandRows {
     }
 
   private:
+    bool carried(int x) {
+        if (has_air_)
+            for (MirageRow& row : mirages_)
+                if (row.carries_air(x)) return true;
+        return false;
+    }
+
     std::vector<BandRow> rows_;
     std::vector<MirageRow> mirages_;
+    bool has_air_ = false;
 };
 
 }  // namespace eikonal

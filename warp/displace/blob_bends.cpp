@@ -115,11 +115,10 @@ bool meets(const SeenBlob& b, const Camera& camera, const PixelWindow& tile) {
 
 }  // namespace
 
-BlobBends::BlobBends(const std::vector<Blob>& blobs, double strength, const Camera& camera, double farthest,
-                     double gain)
-    : camera_(camera) {
-    const double each = kNegligibleShift / static_cast<double>(blobs.size());
-    for (const Blob& blob : blobs)
+BlobBends::BlobBends(std::vector<Blob> blobs, double strength, const Camera& camera, double farthest, double gain)
+    : camera_(camera), blobs_(std::move(blobs)) {
+    const double each = kNegligibleShift / static_cast<double>(blobs_.size());
+    for (const Blob& blob : blobs_)
         if (const auto s = see(blob, 0, strength, camera, farthest, gain, each)) seen_.push_back(*s);
 }
 
@@ -134,6 +133,44 @@ bool may_be_seen(const std::vector<BlobHome>& homes, double strength, const Came
 }
 
 namespace {
+
+/// kMostBlobLayers of them at most: nearest, farthest, and as many as are left evenly over the depths where blobs are.
+std::vector<double> spread_layers(const std::vector<const SeenBlob*>& blobs, double nearest, double farthest) {
+    struct Stretch {
+        double begin, end;
+    };
+    std::vector<Stretch> each, stretches;
+    for (const SeenBlob* b : blobs) {
+        const Stretch s{std::max(nearest, b->forward - b->reach), std::min(farthest, b->forward + b->reach)};
+        if (s.begin < s.end) each.push_back(s);
+    }
+    std::sort(each.begin(), each.end(), [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
+    for (const Stretch& s : each) {
+        if (!stretches.empty() && s.begin <= stretches.back().end)
+            stretches.back().end = std::max(stretches.back().end, s.end);
+        else
+            stretches.push_back(s);
+    }
+    while (stretches.size() > kMostBlobLayers / 8) {  // join the two with the smallest gap
+        std::size_t least = 1;
+        for (std::size_t i = 2; i < stretches.size(); ++i)
+            if (stretches[i].begin - stretches[i - 1].end < stretches[least].begin - stretches[least - 1].end)
+                least = i;
+        stretches[least - 1].end = stretches[least].end;
+        stretches.erase(stretches.begin() + static_cast<std::ptrdiff_t>(least));
+    }
+    double length = 0;
+    for (const Stretch& s : stretches) length += s.end - s.begin;
+    const auto left = static_cast<double>(kMostBlobLayers - 2 - 2 * static_cast<int>(stretches.size()));
+    std::vector<double> depths{nearest, farthest};
+    for (const Stretch& s : stretches) {
+        const int steps = 1 + static_cast<int>(left * ((s.end - s.begin) / length));
+        for (int i = 0; i <= steps; ++i) depths.push_back(s.begin + (s.end - s.begin) * i / steps);
+    }
+    std::sort(depths.begin(), depths.end());
+    depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
+    return depths;
+}
 
 /// Depths at which the blobs of a group are worked out.
 std::vector<double> blob_layers(const std::vector<const SeenBlob*>& blobs, double nearest, double farthest) {
@@ -157,11 +194,7 @@ std::vector<double> blob_layers(const std::vector<const SeenBlob*>& blobs, doubl
     double apart = kLayerSpacing;
     for (int i = 0; i < 12; ++i, apart *= 2)
         if (std::vector<double> depths = spaced(apart); depths.back() == farthest) return depths;
-    std::vector<double> even;
-    for (int k = 0; k < kMostBlobLayers; ++k)
-        even.push_back(k + 1 == kMostBlobLayers ? farthest
-                                                : nearest + (farthest - nearest) * k / (kMostBlobLayers - 1));
-    return even;
+    return spread_layers(blobs, nearest, farthest);
 }
 
 }  // namespace

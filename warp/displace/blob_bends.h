@@ -37,13 +37,15 @@ inline constexpr int kMostBlobLayers = 64;
 class BlobBends {
   public:
     /// strength: multiplies ∇n. gain: on every displacement, decides what is too weak to see. farthest: depth [m].
-    BlobBends(const std::vector<Blob>& blobs, double strength, const Camera& camera, double farthest, double gain);
+    BlobBends(std::vector<Blob> blobs, double strength, const Camera& camera, double farthest, double gain);
 
     /// Filled bands for a tile: pixels of `cover`, which lies within it. Their layers depend on the tile alone.
     std::vector<Band> bands(const PixelWindow& tile, const PixelWindow& cover, double nearest, double farthest) const;
     /// All of them on every pixel of a window, for objects at one depth: what bands() interpolates.
     Band every_pixel(const PixelWindow& window, double depth) const;
 
+    const std::vector<Blob>& blobs() const { return blobs_; }
+    /// Those that move anything.
     const std::vector<SeenBlob>& seen() const { return seen_; }
     /// Spacing of nodes and depths of layers that suit all of them together.
     int finest_spacing() const;
@@ -51,7 +53,8 @@ class BlobBends {
 
   private:
     Camera camera_;
-    std::vector<SeenBlob> seen_;  ///< those that move anything
+    std::vector<Blob> blobs_;
+    std::vector<SeenBlob> seen_;
 };
 
 /// Upper bound of the displacement by a blob n_j, σ at axial depth `forward`, of objects up to `farthest` [px]: the

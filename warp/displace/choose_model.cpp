@@ -15,28 +15,31 @@ std::vector<double> choice_frames(const Scene& scene, const DisplacerSettings& s
     return {first, 0.5 * (first + last), last};
 }
 
-/// The largest p95 of the frames.
+/// The largest p95 of the frames and distances.
 double sampled_p95(const Displacer& displacer, const Scene& scene, const DisplacerSettings& settings,
                    const std::vector<double>& distances, double gain) {
     double worst = 0;
+    std::vector<float> uv(2 * static_cast<std::size_t>(settings.width));
     for (const double frame : choice_frames(scene, settings)) {
         const Displacer::Instant instant = displacer.at(frame, distances.front(), distances.back(), gain);
-        std::vector<double> errors;
-        std::vector<float> uv(2 * static_cast<std::size_t>(settings.width));
-        for (int r = 0; r < kChoiceRows; ++r) {
-            const PixelWindow row{0, (2 * r + 1) * settings.height / (2 * kChoiceRows), settings.width, 1};
-            for (const double distance : distances) {
+        for (const double distance : distances) {
+            std::vector<double> errors;
+            for (int r = 0; r < kChoiceRows; ++r) {
+                const PixelWindow row{0, (2 * r + 1) * settings.height / (2 * kChoiceRows), settings.width, 1};
                 instant.map(row, distance, DepthMeeting::Own, uv.data());
-                const int samples =
-                    std::max<int>(1, kErrorSamples / (kChoiceRows * static_cast<int>(distances.size())));
                 const std::vector<double> some =
-                    instant.sampled_errors(row, distance, DepthMeeting::Own, uv.data(), samples);
+                    instant.sampled_errors(row, distance, DepthMeeting::Own, uv.data(), kChoiceSamples / kChoiceRows);
                 errors.insert(errors.end(), some.begin(), some.end());
             }
+            worst = std::max(worst, statistics_of(std::move(errors)).p95);
         }
-        worst = std::max(worst, statistics_of(std::move(errors)).p95);
     }
     return worst;
+}
+
+std::vector<double> choice_distances(const DisplacerSettings& settings, bool one_distance) {
+    const double far = settings.far;
+    return one_distance ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
 }
 
 }  // namespace
@@ -44,8 +47,7 @@ double sampled_p95(const Displacer& displacer, const Scene& scene, const Displac
 ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double tolerance, bool one_distance,
                          const GainOf& gain_of) {
     settings.sample_errors = true;
-    const double far = settings.far;
-    const std::vector<double> distances = one_distance ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
+    const std::vector<double> distances = choice_distances(settings, one_distance);
     ModelChoice choice{};
     double rms = 0;
     for (const auto& [name, model] : kModelNames) {
@@ -61,7 +63,7 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
         const double gain = gain_of(*displacer);
         const double p95 = sampled_p95(*displacer, scene, settings, distances, gain);
         choice.tried.push_back({model, "", p95});
-        rms = displacer->expected_rms(far) * std::abs(gain);
+        rms = displacer->expected_rms(settings.far) * std::abs(gain);
         if (!choice.displacer || p95 < choice.p95) {
             choice.displacer = std::move(displacer);
             choice.model = model;
@@ -69,7 +71,7 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
         }
         choice.within = choice.p95 <= tolerance;
         choice.exact = choice.displacer->models().empty();
-        if (choice.within || choice.exact) break;
+        if (kChoiceMargin * choice.p95 <= tolerance || choice.exact) break;
     }
     if (choice.within || choice.exact || choice.p95 <= kHopeless * rms) return choice;
     settings.model.reset();
@@ -79,6 +81,29 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
     for (const TriedModel& tried : choice.tried)
         if (tried.model == choice.model && tried.refusal.empty()) choice.p95 = tried.p95;
     return choice;
+}
+
+std::optional<Model> sufficient_model(const Scene& scene, DisplacerSettings settings, double tolerance,
+                                      bool one_distance, const GainOf& gain_of, Model model, double p95) {
+    settings.sample_errors = true;
+    const std::vector<double> distances = choice_distances(settings, one_distance);
+    double own = 0;
+    for (const auto& [name, other] : kModelNames) {
+        if (other < model) continue;
+        settings.model = other;
+        try {
+            const Displacer displacer(scene, settings);
+            if (displacer.models().empty()) return {};
+            const double sampled = sampled_p95(displacer, scene, settings, distances, gain_of(displacer));
+            if (other == model)
+                own = sampled;
+            else if (p95 * sampled <= tolerance * own)
+                return other;
+        } catch (const UserError&) {
+            continue;  // does not apply
+        }
+    }
+    return {};
 }
 
 }  // namespace eikonal

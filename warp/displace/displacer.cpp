@@ -24,6 +24,11 @@ constexpr int kTileUnit = 16;
 int tile_side(int picture, int largest) {
     return std::min(largest, (picture + kTileUnit - 1) / kTileUnit * kTileUnit);
 }
+/// Tiles of pictures with a mirage and other media are as long as the picture the way that the mirage moves, up to
+/// this, and as wide: a ray that it bends passes the air of far pixels.
+constexpr int kAirTileLength = 2048, kAirTileWidth = 128;
+/// How far beyond a tile, in pictures, the air is looked up; farther out it is that of the border.
+constexpr double kAirAround = 0.5;
 /// Between nodes and layers the interpolant may exceed them by this factor.
 constexpr double kOvershoot = 1.6;
 /// Least depth that layers are made for [m]: nearer ones move as at this one, which is not at all.
@@ -73,6 +78,13 @@ struct Displacer::Instant::State {
             std::any_of(mirages.begin(), mirages.end(), [&](const Mirage& m) { return m.touches(window); });
         return any ? mirages : std::span<const Mirage>{};
     }
+    /// Whether a sample's ray ends on a surface where the depth buffer has a hole: the tracer's goes on through it.
+    bool falls_through(BandRows& row, const DepthPlane& depth, const SamplePixel& p) const;
+    /// The mirage that bends the rays of a tile through other media; null if there are none or they stay straight.
+    const Mirage* air_bender(const PixelWindow& tile) const;
+    /// The pixels whose air the rays of a tile may pass that a mirage bends: no farther from the picture than it is
+    /// wide.
+    PixelWindow air_around(const Mirage& mirage, const PixelWindow& tile) const;
     /// How far a bent ray may lead from its pixel [px].
     int reach(const std::vector<Band>& bands, std::span<const Mirage> near, const PixelWindow& window) const;
 };
@@ -83,6 +95,46 @@ int Displacer::Instant::State::reach(const std::vector<Band>& bands, std::span<c
     for (const Band& band : bands) largest += band.largest_shift();
     for (const Mirage& m : near) largest += m.largest_shift(window);
     return static_cast<int>(std::min(std::ceil(kOvershoot * largest) + 1, 1e6));
+}
+
+const Mirage* Displacer::Instant::State::air_bender(const PixelWindow& tile) const {
+    if (bending().empty()) return nullptr;
+    const auto bends = [&](const Mirage& m) { return m.touches(tile); };
+    const auto first = std::find_if(mirages.begin(), mirages.end(), bends);
+    return first == mirages.end() ? nullptr : &*first;
+}
+
+PixelWindow Displacer::Instant::State::air_around(const Mirage& mirage, const PixelWindow& tile) const {
+    const dvec2 across = mirage.axes(tile.x0 + tile.width / 2, tile.y0 + tile.height / 2).across;
+    const dvec2 way = mirage.way() / std::max(glm::length(across), 1e-300) * across;
+    const auto limited = [](double part, double picture) {
+        return static_cast<int>(std::clamp(part, -kAirAround * picture, kAirAround * picture));
+    };
+    int x0 = tile.x0, y0 = tile.y0, x1 = tile.x0 + tile.width, y1 = tile.y0 + tile.height;
+    for (int y = tile.y0; y < tile.y0 + tile.height; ++y) {
+        const double most = mirage.largest_shift({tile.x0, y, tile.width, 1});
+        const int dx = limited(most * way.x, 2 * camera.center.x), dy = limited(most * way.y, 2 * camera.center.y);
+        x0 = std::min(x0, tile.x0 + dx);
+        x1 = std::max(x1, tile.x0 + tile.width + dx);
+        y0 = std::min(y0, y + dy);
+        y1 = std::max(y1, y + dy + 1);
+    }
+    return {x0, y0, x1 - x0, y1 - y0};
+}
+
+bool Displacer::Instant::State::falls_through(BandRows& row, const DepthPlane& depth, const SamplePixel& p) const {
+    const double end = row.end(p.x);
+    if (!std::isfinite(end)) return false;
+    const Shift d = row.at(p.x, end);
+    const double x = std::floor(p.x + 0.5 + d.x), y = std::floor(p.y + 0.5 + d.y);
+    const double z = depth.at(static_cast<int>(x), static_cast<int>(y));
+    const auto below = [&](const SurfaceLayer& surface) {
+        double highest = -std::numeric_limits<double>::infinity();  // of what the pixel may show
+        for (const dvec2 corner : {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1), dvec2(1, 1)})
+            highest = std::max(highest, surface.height(straight_ray(camera, x + corner.x, y + corner.y).at(z)));
+        return highest < -kGroundTolerance;
+    };
+    return std::any_of(media->surface_layers().begin(), media->surface_layers().end(), below);
 }
 
 /// The bands of every layer on a tile, filled and scaled.
@@ -159,9 +211,13 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
                                side_y};
         const PixelWindow part = intersection(tile, window);
         // Nodes on lines depend on where the line begins, and the march's reach on the whole tile.
-        const std::vector<Band> bands =
-            state_->tile_bands(tile, march ? tile : PixelWindow{tile.x0, part.y0, tile.width, part.height});
+        const PixelWindow asked = march ? tile : PixelWindow{tile.x0, part.y0, tile.width, part.height};
         const std::span<const Mirage> mirages = state_->mirages_on(tile);
+        const Mirage* bending = state_->air_bender(tile);
+        const PixelWindow around = bending != nullptr ? state_->air_around(*bending, tile) : tile;
+        const std::vector<Band> bands = state_->tile_bands(around, bending != nullptr ? around : asked);
+        const BentAir air =
+            bending != nullptr ? BentAir(bands, *bending, asked, around, state_->nearest, state_->farthest) : BentAir();
         const int reach = march ? state_->reach(bands, mirages, tile) : 1;
         std::optional<MeetTile> meet;
         if (plane) meet.emplace(**plane, part, meeting, reach, mirages);
@@ -170,7 +226,7 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
             float* out = uv + static_cast<std::size_t>(y - window.y0) * stride +
                          2 * static_cast<std::size_t>(part.x0 - window.x0);
             const std::size_t values = 2 * static_cast<std::size_t>(part.width);
-            row.start(bands, y, mirages);
+            row.start(bands, y, mirages, 1, bending != nullptr ? &air : nullptr);
             if (meet) {
                 meet->row(row, y, out);
             } else {
@@ -200,9 +256,10 @@ std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window
         const PixelWindow pixel{p.x, p.y, 1, 1};
         const std::vector<Band> bands{bent_pixel(bent, s.camera, p.x, p.y, plane ? s.farthest : p.depth)};
         // the bent ray has passed over the surfaces: mirages only tell where it ends
-        const std::span<const Mirage> mirages = s.mirages_on(pixel);
+        std::span<const Mirage> mirages = s.mirages_on(pixel);
         BandRows row;
         row.start(bands, p.y, mirages, 0);
+        if (plane && s.falls_through(row, **plane, p)) row.start(bands, p.y, mirages = {});
         std::array<float, 2> d{};
         if (plane) {
             MeetTile(**plane, pixel, meeting, s.reach(bands, {}, pixel), mirages).row(row, p.y, d.data());
@@ -249,6 +306,12 @@ Displacer::Instant Displacer::at(double frame, double nearest, double farthest, 
                                     shot_->scene.optics.ray_equation, state->camera, farthest,
                                     fmt::format("medium.{}", medium));
     }
+    if (!state->mirages.empty() && !state->bending().empty()) {
+        const dvec2 across = state->mirages.front().axes(shot_->settings.width / 2, shot_->settings.height / 2).across;
+        const bool upright = std::abs(across.y) >= std::abs(across.x);
+        state->tile_width = tile_side(shot_->settings.width, upright ? kAirTileWidth : kAirTileLength);
+        state->tile_height = tile_side(shot_->settings.height, upright ? kAirTileLength : kAirTileWidth);
+    }
     return Instant(std::move(state));
 }
 
@@ -273,6 +336,9 @@ const std::vector<std::string>& Displacer::notes() const {
 }
 const std::vector<std::string>& Displacer::warnings() const {
     return shot_->media.warnings();
+}
+std::vector<std::string> Displacer::beyond_far(double farthest) const {
+    return shot_->media.beyond_far(farthest);
 }
 std::vector<std::string> Displacer::models() const {
     std::vector<std::string> names;

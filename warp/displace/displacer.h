@@ -85,6 +85,9 @@ class Displacer {
     const std::vector<std::string>& notes() const;
     /// One line each: what the user should know of (folding rays, paths beyond a lattice period).
     const std::vector<std::string>& warnings() const;
+    /// One line each on what does not hold for objects as far as `farthest` [m], beyond the settings' far; none if it
+    /// is not beyond.
+    std::vector<std::string> beyond_far(double farthest) const;
     /// Names of the models in use, in the order of the media.
     std::vector<std::string> models() const;
 

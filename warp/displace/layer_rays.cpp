@@ -77,7 +77,7 @@ LayerRay::LayerRay(const LayerOptics& optics, double H, double w) : optics_(&opt
     const double v_ground = 1 / std::abs(optics.beta), v_H = v_ground / e_H, p_H = std::abs(w) * (1 + y_H) * v_H;
     const double y_0 = optics.beta;
     const double at_ground = w * w * (1 + y_0) * (1 + y_0) - k * (y_0 - y_H) * (a + b * y_0);
-    const bool turns = at_ground <= 0 && A_ > 0;
+    const bool turns = turns_ = at_ground <= 0 && A_ > 0;
     double tau;  // tanh(root χ/2)/root at the camera
     if (turns) {
         const double D = std::sqrt(std::max(0.0, B_ * B_ - 4 * A_ * C_));

@@ -55,6 +55,10 @@ class LayerRay {
 
     /// σ where the ray meets the plane [m]; infinite if it never does.
     double hit() const { return hit_; }
+    /// σ where the ray turns round above the plane, on its way down to it [m]; 0 if it does not.
+    double turn() const { return !straight_ && turns_ && start_X_ < 0 ? -start_X_ * optics_->d0 : 0; }
+    /// h - H at a way σ >= 0 [m].
+    double climb(double way) const { return w_ * way + rise(way); }
     /// h - (H + wσ) at a way σ >= 0 [m]: how far the bent ray is above the straight one. Constant beyond the hit is the
     /// ray's end, not this: there it is that of σ = hit().
     double rise(double way) const { return rise_where(way, 1, 0); }
@@ -73,6 +77,7 @@ class LayerRay {
     const LayerOptics* optics_ = nullptr;
     double H_ = 0, w_ = 0;
     bool straight_ = true;  ///< too far above the layer
+    bool turns_ = false;    ///< its anchor is a turning point
     double bend_ = 0, bend_slope_ = 0,
            short_ = 0;  ///< second and third derivative of h at the start; σ/d0 where they do
     double A_ = 0, B_ = 0, C_ = 0;

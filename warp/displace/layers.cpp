@@ -25,6 +25,8 @@ constexpr double kJudgedSplineError = 0.125;
 constexpr double kAligned = 1e-9;
 /// table and tables take rays for parallel to a lattice axis: refused beyond 30 degrees from it.
 constexpr double kLeastAlignment = 0.866;
+/// How much more than at `far` turbulence may move what is deeper: as 100 times the way does.
+constexpr double kDeeper = 10;
 /// A Gaussian field's largest value over a shot, in parts of its rms.
 constexpr double kLargestOverRms = 6;
 /// Instants over which the expected rms of blobs is taken.
@@ -80,7 +82,8 @@ void MediaLayers::keep(MediumLayer layer, std::string note) {
                         layer.medium, rms, kLargestShift));
     // a camera may zoom in later; the rays of a wide view's corners cross more air, and show a bend larger
     const double wide = corner_gain(layer.model);
-    if (!camera_moves_ && kLargestOverRms * rms * wide < settings_.negligible) {
+    const double deeper = deepest() > settings_.far ? kDeeper : 1;
+    if (!camera_moves_ && kLargestOverRms * rms * wide * deeper < settings_.negligible) {
         notes_.push_back(fmt::format("medium.{}: left out, it moves no pixel by more than {:g} px ({:.2g} px rms)",
                                      layer.medium, settings_.negligible, rms));
         return;
@@ -135,7 +138,7 @@ void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
     double strongest = 0;
     for (const BlobHome& home : homes) strongest = std::max(strongest, std::abs(home.largest.n));
     // wherever they are: as if every blob were at the camera
-    const double bound = largest_blob_shift({{}, 0, strongest}, strength_, reference_, 0, settings_.far) * cloud.most();
+    const double bound = largest_blob_shift({{}, 0, strongest}, strength_, reference_, 0, deepest()) * cloud.most();
     const auto leave_out = [&](const std::string& why) {
         notes_.push_back(fmt::format("medium.{}: left out, {}", i, why));
     };
@@ -143,12 +146,15 @@ void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
     if (strongest == 0) return leave_out("no blob differs from the ambient temperature");
     if (bound == 0 || (!camera_moves_ && bound <= settings_.negligible))
         return leave_out(fmt::format("its blobs move no pixel by more than {:.2g} px", bound));
-    // with room for an overscan as wide as the picture on every side
-    const int w = settings_.width, h = settings_.height;
-    if (!camera_moves_ &&
-        !may_be_seen(homes, strength_, reference_, {-w, -h, 3 * w, 3 * h}, settings_.far, settings_.negligible))
+    const auto seen = [&](const PixelWindow& pixels) {
+        return may_be_seen(homes, strength_, reference_, pixels, deepest(), settings_.negligible);
+    };
+    if (!camera_moves_ && !seen({0, 0, settings_.width, settings_.height}) &&
+        !(settings_.overscan && seen(settings_.overscan())))
         return leave_out(
-            fmt::format("none of its blobs comes between the picture and what is up to {:g} m away", settings_.far));
+            fmt::format("none of its blobs moves a pixel of the picture by more than {:g} px: they are "
+                        "aside of it, or behind what is up to {:g} m away",
+                        settings_.negligible, deepest()));
     notes_.push_back(fmt::format(
         "medium.{}: model {}, up to {} blobs at a time", i,
         second_order() ? "second-order (through all media together)" : "first-order (closed form)", cloud.most()));
@@ -174,10 +180,10 @@ void MediaLayers::add(std::size_t i, const SurfaceSpec& spec) {
     }
     const std::string name = fmt::format("medium.{}", i);
     check_camera_stays_above(spec, name);
-    Mirage mirage(spec, law_, scene_.optics.exaggeration, scene_.optics.ray_equation, reference_, settings_.far, name);
+    Mirage mirage(spec, law_, scene_.optics.exaggeration, scene_.optics.ray_equation, reference_, deepest(), name);
     if (!camera_moves_ && !mirage.touches({0, 0, settings_.width, settings_.height})) {
         notes_.push_back(fmt::format("{}: left out, it moves no pixel of the view by more than {:g} px up to {:g} m",
-                                     name, kMirageThreshold, settings_.far));
+                                     name, kMirageThreshold, deepest()));
         return;
     }
     const SurfaceLayer layer(spec, law_);
@@ -232,13 +238,48 @@ double MediaLayers::cells_a_metre(const Camera& camera, const dvec3& cell) const
     return most;
 }
 
-void MediaLayers::check_turned_steps(std::size_t i, const dvec3& cell, const Camera& camera) const {
-    const double steps = settings_.far * cells_a_metre(camera, cell);
-    if (steps > kMostFirstOrderSteps)
-        throw FrameError(fmt::format(
-            "medium.{}: the camera has turned or zoomed out so that first-order takes {:.0f} steps a ray; allowed "
-            "are at most {:g}; use a shorter --far, or a longer period or inner_scale",
-            i, steps, kMostFirstOrderSteps));
+void MediaLayers::check_frame_steps(std::size_t i, const dvec3& cell, const Camera& camera, double farthest) const {
+    const double steps = farthest * cells_a_metre(camera, cell);
+    if (!(steps > kMostFirstOrderSteps)) return;
+    const std::string cause = is_beyond(farthest, settings_.far)
+                                  ? fmt::format("depth reaches {:g} m, up to which", farthest)
+                                  : "the camera has turned or zoomed out so that";
+    throw FrameError(fmt::format(
+        "medium.{}: {} {} takes {:.0f} steps a ray; allowed are at most {:g}; use a shorter --far, which limits depth, "
+        "or a longer period or inner_scale",
+        i, cause, name_of(own(Model::FirstOrder)), steps, kMostFirstOrderSteps));
+}
+
+double MediaLayers::deepest() const {
+    return std::max(settings_.far, settings_.deepest);
+}
+
+std::vector<std::string> MediaLayers::beyond_far(double farthest) const {
+    std::vector<std::string> lines;
+    if (!is_beyond(farthest, settings_.far)) return lines;
+    for (const MediumLayer& layer : layers_) {
+        const double steps = farthest * cells_a_metre(reference_, layer.cell);
+        const bool cells = std::holds_alternative<LatticeField>(layer.field) ||
+                           std::holds_alternative<GradientNoiseField>(layer.field);
+        if (cells && layer.model >= Model::FirstOrder && steps > kManySteps)
+            lines.push_back(fmt::format("medium.{}: {} takes {:.0f} steps a ray, and frames take long", layer.medium,
+                                        name_of(layer.model), steps));
+        if (std::holds_alternative<ScreenField>(layer.field))
+            lines.push_back(
+                fmt::format("medium.{}: its thin screens end there, and what is behind them moves as if "
+                            "the air did, too",
+                            layer.medium));
+        const auto* lattice = std::get_if<LatticeField>(&layer.field);
+        if (lattice == nullptr) continue;
+        const PathRays rays = nearest_axis(reference_, scene_.optics.aperture);
+        const double period = lattice->geometry().period[static_cast<std::size_t>(rays.axis)];
+        if (settings_.far <= period && farthest > period)
+            lines.push_back(
+                fmt::format("medium.{}: the lattice's period of {:g} m along the path repeats, and "
+                            "displacement is overstated",
+                            layer.medium, period));
+    }
+    return lines;
 }
 
 void MediaLayers::check_steps(std::size_t i, const dvec3& cell) {

@@ -13,7 +13,7 @@
 /// What cannot move any pixel by `negligible` is left out, and a note says so. Failures: UserError for media and models
 /// that do not go together, for fields that do not fit into memory, for first-order paths of too many cells, and for
 /// media that are expected to move pixels by more than kLargestShift. FrameError from instant() for paths of too many
-/// cells that a camera turns to later.
+/// cells that a camera turns to later, or that a frame's depth asks for.
 #pragma once
 
 #include <string>
@@ -58,6 +58,8 @@ class MediaLayers {
     const std::vector<MediumLayer>& layers() const { return layers_; }
     /// Heated or cooled surfaces and their index in Scene::media.
     const std::vector<std::pair<std::size_t, SurfaceSpec>>& surfaces() const { return surfaces_; }
+    /// The same, in that order.
+    const std::vector<SurfaceLayer>& surface_layers() const { return surface_layers_; }
     const IndexLaw& law() const { return law_; }
 
     LayerInstant instant(const MediumLayer& layer, const Camera& camera, double t, double nearest, double farthest,
@@ -81,6 +83,9 @@ class MediaLayers {
     double focusing_variance(const MediumLayer& layer, double D) const;
     /// Bytes of one instant of everything, about.
     std::uint64_t instant_bytes() const;
+
+    /// Displacer's.
+    std::vector<std::string> beyond_far(double farthest) const;
 
     const std::vector<std::string>& notes() const { return notes_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
@@ -107,8 +112,10 @@ class MediaLayers {
     double cells_a_metre(const Camera& camera, const dvec3& cell) const;
     /// Warns of, or refuses, first-order rays of too many steps through cells [m].
     void check_steps(std::size_t i, const dvec3& cell);
-    /// FrameError if a later camera's are too many.
-    void check_turned_steps(std::size_t i, const dvec3& cell, const Camera& camera) const;
+    /// FrameError if those of a frame's camera and depth are too many.
+    void check_frame_steps(std::size_t i, const dvec3& cell, const Camera& camera, double farthest) const;
+    /// What nothing lies behind, as far as is known before the depth of the frames is [m].
+    double deepest() const;
     void refuse_other_model() const;
     struct SampledVariance {
         double shift = 0;  ///< of |d| [px²]
@@ -130,9 +137,9 @@ class MediaLayers {
     IndexLaw law_;
     std::vector<MediumLayer> layers_;
     std::vector<std::pair<std::size_t, SurfaceSpec>> surfaces_;
-    std::vector<SurfaceLayer> surface_layers_;  ///< the same
-    std::vector<std::string> surface_names_;    ///< for messages
-    std::vector<Mirage> reference_mirages_;     ///< as the reference camera sees them
+    std::vector<SurfaceLayer> surface_layers_;
+    std::vector<std::string> surface_names_;  ///< for messages
+    std::vector<Mirage> reference_mirages_;   ///< as the reference camera sees them
     std::vector<std::string> notes_, warnings_;
 };
 

@@ -73,7 +73,9 @@ LayerInstant MediaLayers::instant(const MediumLayer& layer, const Camera& camera
     if (const auto* screens = std::get_if<ScreenField>(&layer.field))
         return ScreensInstant{screens->at(t), reference_, strength_,
                               std::get<TurbulenceSpec>(scene_.media[layer.medium]).falloff};
-    if (camera_moves_ && layer.model >= Model::FirstOrder) check_turned_steps(layer.medium, layer.cell, camera);
+    const double way = std::max(farthest, settings_.far);
+    if ((camera_moves_ || is_beyond(farthest, settings_.far)) && layer.model >= Model::FirstOrder)
+        check_frame_steps(layer.medium, layer.cell, camera, way);
     if (const auto* noise = std::get_if<GradientNoiseField>(&layer.field))
         return FirstOrderInstant{
             GradientNoiseInstant{noise, t}, strength_, layer.cell, aperture, settings_.far, settings_.cancelled};
@@ -84,7 +86,7 @@ LayerInstant MediaLayers::instant(const MediumLayer& layer, const Camera& camera
             return slice_instant(field, t, rays, settings_.far, layer.constant, strength_, layer.padding);
         case Model::Tables: {
             std::vector<double> depths;
-            for (int k = 1; k <= kTables; ++k) depths.push_back(settings_.far * k / kTables);
+            for (int k = 1; k <= kTables; ++k) depths.push_back(way * k / kTables);
             return exact_instant(field, t, rays, depths, DepthInterpolation::Linear, strength_, layer.padding);
         }
         case Model::Spectral:
@@ -108,7 +110,8 @@ std::vector<LayerInstant> MediaLayers::instants(const Camera& camera, double t, 
 }
 
 FieldPart MediaLayers::part_of(const MediumLayer& layer, const LayerInstant& instant, double t) const {
-    if (const auto* cloud = std::get_if<BlobCloud>(&layer.field)) return {BlobsPart{cloud->at(t), kRayBlobReach}};
+    if (const auto* bends = std::get_if<BlobBends>(&instant))
+        return {BlobsPart{bends->blobs(), second_order() ? kRayBlobReach : kJudgedBlobReach}};
     if (const auto* field = std::get_if<ScreenField>(&layer.field)) {
         const auto& screens = std::get<ScreensInstant>(instant);
         const ScreenFrame frame{reference_.position, reference_.right, reference_.up, reference_.forward, {}};
@@ -129,10 +132,13 @@ SecondOrderInstant MediaLayers::together(const std::vector<LayerInstant>& own, c
     std::vector<FieldPart> parts;
     Grid grid;
     double cell = std::numeric_limits<double>::infinity(), step = second_order() && reference ? kFineStep : kStep;
+    const bool blobs_alone = std::all_of(
+        own.begin(), own.end(), [](const LayerInstant& layer) { return std::holds_alternative<BlobBends>(layer); });
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         const MediumLayer& layer = layers_[i];
         parts.push_back(part_of(layer, own[i], t));
         parts.back().weight = gain;
+        if (blobs_alone) std::get<BlobsPart>(parts.back().medium).step = step;
         if (std::holds_alternative<GradientNoiseField>(layer.field)) step = std::min(step, kNoiseStep);
         if (const auto* blobs = std::get_if<BlobBends>(&own[i]))
             grid.add(blobs->finest_spacing(), blobs->layers(nearest, farthest));
@@ -144,7 +150,8 @@ SecondOrderInstant MediaLayers::together(const std::vector<LayerInstant>& own, c
             cell = std::min({cell, layer.cell.x, layer.cell.y, layer.cell.z});
     }
     if (reference)
-        for (const SurfaceLayer& surface : surface_layers_) parts.push_back({&surface});
+        for (const SurfaceLayer& surface : surface_layers_) parts.push_back({SurfacePart{&surface, kSurfaceStep}});
+    if (blobs_alone && !own.empty()) step = 1;  // theirs, found in one search
     grid.finish(nearest, farthest);
     return {FieldInstant(scene_.optics, std::move(parts)),    step, grid.spacing,  std::move(grid.depths),
             std::isfinite(cell) ? scene_.optics.aperture : 0, cell, settings_.far, settings_.cancelled};

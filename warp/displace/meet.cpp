@@ -3,9 +3,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 namespace eikonal {
 namespace {
@@ -15,6 +17,9 @@ using Range = DepthPlane::Range;
 int floor_block(int a) {
     return floor_div(a, DepthPlane::kBlock);
 }
+
+/// Of a hidden ray's next step, to kMarchStep.
+constexpr int kMostHalvings = 48;
 
 /// Whole pixels, far within an int for any displacement.
 int whole(float v) {
@@ -51,31 +56,75 @@ struct Ray {
 struct SkimmingRay : Ray {
     const MirageGround& ground;
     double last;  ///< axial depth where it ends, on the ground or at the farthest object
+    bool ends_on_ground;
 
     struct Facet {
         float seen;   ///< in the depth buffer
         double stop;  ///< of the ray
+        float limit;  ///< objects nearer than this stand out before it: any before the ground
     };
     Facet under(Shift d) const {
         const int i = x + whole(d.x + 0.5f), j = y + whole(d.y + 0.5f);
         const float seen = depth.at(i, j);
-        return {seen, ground.is(i, j, seen) ? last : std::min<double>(seen, last)};
+        if (ground.is(i, j, seen)) return {seen, last, seen};
+        return {seen, std::min<double>(seen, last), kEdgeRatio * seen};
     }
     bool blocked(Shift d, double z) const { return under(d).stop <= z; }
-    /// Whether the picture's samples around pixel + d hold an object nearer than `limit`.
+    /// Whether the picture around pixel + d holds some of an object nearer than `limit`: the samples there or,
+    /// antialiased ones among these, their neighbours.
     bool at_edge(Shift d, float limit) const {
         if (limit <= depth.nearest()) return false;
         const int xi = x + whole(d.x), yi = y + whole(d.y);
         const int nx = d.x != std::floor(d.x) ? 1 : 0, ny = d.y != std::floor(d.y) ? 1 : 0;
-        for (int j = yi; j <= yi + ny; ++j)
-            for (int i = xi; i <= xi + nx; ++i)
+        for (int j = yi - 1; j <= yi + ny + 1; ++j)
+            for (int i = xi - 1; i <= xi + nx + 1; ++i)
                 if (const float there = depth.at(i, j); there < limit && !ground.is(i, j, there)) return true;
         return false;
     }
-    /// d, or where the picture's samples there mix in something much nearer, the centre of the facet.
+    /// d, or where the picture's samples there mix in something much nearer, a point beside it that is as deep and
+    /// clear of it; the centre of the facet if there is none.
     Shift settled(Shift d) const {
-        if (!at_edge(d, kEdgeRatio * under(d).seen)) return d;
+        const auto [seen, stop, limit] = under(d);
+        if (!at_edge(d, limit)) return d;
+        constexpr std::array<std::array<float, 2>, 8> kWays{
+            {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+        for (float aside = 0.5f; aside <= kFarthestBack; aside += 0.5f)
+            for (const auto& [wx, wy] : kWays) {
+                const Shift there{d.x + aside * wx, d.y + aside * wy};
+                const float beside = under(there).seen;
+                if (beside >= kEdgeRatio * seen && kEdgeRatio * beside <= seen && !at_edge(there, limit)) return there;
+            }
         return {static_cast<float>(whole(d.x + 0.5f)), static_cast<float>(whole(d.y + 0.5f))};
+    }
+    /// The last point d before the ray passes behind an object at `blocked`, moved back from the object's outline until
+    /// no sample of a cubic filter there, antialiased ones beside the outline included, holds any of it.
+    Shift stood_back(Shift d, Shift blocked, Shift before) const {
+        const float bx = before.x - blocked.x, by = before.y - blocked.y, length = std::sqrt(bx * bx + by * by);
+        const auto [seen, stop, limit] = under(d);
+        for (float back = 0.5f; length > 0 && back <= kFarthestBack; back += 0.5f) {
+            const Shift there{d.x + back / length * bx, d.y + back / length * by};
+            if (under(there).seen >= kEdgeRatio * seen && !at_edge(there, limit)) return there;
+        }
+        return settled(d);
+    }
+    /// The nearest ground in sight as deep as `end`, where the ray ends on ground that is hidden: to either side of it,
+    /// along the plane, hence at right angles to the ray's way `along` over the screen.
+    std::optional<Shift> ground_beside(Shift end, Shift along) const {
+        constexpr double kAlike = 0.05;
+        const float length = std::sqrt(along.x * along.x + along.y * along.y);
+        if (!(length > 0)) return std::nullopt;
+        const float ax = -along.y / length, ay = along.x / length;
+        const PixelWindow& w = depth.window();
+        for (int k = 1; k <= kFarthestAside; ++k)
+            for (const int side : {-k, k}) {
+                const Shift there{end.x + static_cast<float>(side) * ax, end.y + static_cast<float>(side) * ay};
+                const int i = x + whole(there.x + 0.5f), j = y + whole(there.y + 0.5f);
+                if (i < w.x0 || j < w.y0 || i >= w.x0 + w.width || j >= w.y0 + w.height) continue;
+                const float seen = depth.at(i, j);
+                if (ground.is(i, j, seen) && std::abs(seen - last) <= kAlike * last && !at_edge(there, seen))
+                    return there;
+            }
+        return std::nullopt;
     }
     /// Whether no object up to depth z is about the way from pixel + a to pixel + b. Looks at single pixels where these
     /// are few.
@@ -144,20 +193,41 @@ Shift march(const Ray& ray, const Range& range) {
     return d;
 }
 
+/// A point of a ray.
+struct Point {
+    double z;
+    Shift d;
+};
+
+/// Follows a ray that has passed behind an object to where it is in the open again, or to its end.
+Point follow_hidden(const SkimmingRay& ray, Point p) {
+    for (int step = 0; step < kMostMarchSteps && p.z < ray.last && ray.under(p.d).stop <= p.z; ++step) {
+        double next = ray.last;
+        Shift e = ray.at(next);
+        for (int i = 0; i < kMostHalvings && motion(e, p.d) > kMarchStep; ++i) {
+            next = 2 / (1 / p.z + 1 / next);
+            e = ray.at(next);
+        }
+        p = {next, e};
+    }
+    return p;
+}
+
 /// The march of a ray that skims the ground: leaps that no object is about, at most kMarchStep where one is. Edges
-/// matter where the ray ends only: on its way up from the ground it may pass close by.
+/// matter where the ray ends only: on its way up from the ground it may pass close by, or behind.
 Shift skim(const SkimmingRay& ray, double nearest) {
     constexpr double kLeastLeap = 1e-9, kLongerLeap = 4;
     double z = std::min(nearest, ray.last);
     Shift d = ray.at(z);
-    double leap = 1;  // of the way to where the ray would stop, in inverse depth
+    double leap = 1;                // of the way to where the ray would stop, in inverse depth
+    std::optional<Shift> in_sight;  // last, before the ray passed behind something
     for (int step = 0; step < kMostMarchSteps; ++step) {
-        const double stop = ray.under(d).stop;
-        if (stop <= z) break;
-        const Shift upon = ray.at(stop);
+        const SkimmingRay::Facet facet = ray.under(d);
+        if (facet.stop <= z) break;
+        const Shift upon = ray.at(facet.stop);
         if (same_pixel(upon, d)) return ray.settled(upon);
         leap = std::min(1.0, kLongerLeap * leap);
-        const auto reached = [&] { return leap < 1 ? 1 / (1 / z + (1 / stop - 1 / z) * leap) : stop; };
+        const auto reached = [&] { return leap < 1 ? 1 / (1 / z + (1 / facet.stop - 1 / z) * leap) : facet.stop; };
         double next = reached();
         Shift e = leap < 1 ? ray.at(next) : upon;
         while (motion(e, d) > kMarchStep && leap > kLeastLeap && !ray.clear(d, e, next)) {
@@ -165,12 +235,25 @@ Shift skim(const SkimmingRay& ray, double nearest) {
             next = reached();
             e = ray.at(next);
         }
-        if (const double there = ray.under(e).stop; there <= next)
-            return ray.settled(there == next ? e : bisect(ray, z, d, next, e));
+        if (const SkimmingRay::Facet met = ray.under(e); met.stop <= next) {
+            if (met.stop == next) return ray.settled(e);
+            const Shift last_open = bisect(ray, z, d, next, e);
+            // what lies before the ray by then, and not beside what it was over, is an object that it passes behind
+            if (met.stop >= z || met.seen >= facet.limit) return ray.settled(last_open);
+            if (!in_sight) in_sight = ray.stood_back(last_open, e, d);
+            const Shift way{e.x - d.x, e.y - d.y};
+            const auto [open, there] = follow_hidden(ray, {next, e});
+            if (ray.under(there).stop <= open) {
+                if (ray.under(there).stop == open) return ray.settled(there);
+                return ray.ends_on_ground ? ray.ground_beside(there, way).value_or(*in_sight) : *in_sight;
+            }
+            next = open;
+            e = there;
+        }
         z = next;
         d = e;
     }
-    return ray.settled(d);
+    return in_sight ? *in_sight : ray.settled(d);
 }
 
 /// kFixedPointSteps or fewer times D <- what is under s(D).
@@ -312,7 +395,9 @@ MeetTile::MeetTile(const DepthPlane& depth, const PixelWindow& tile, DepthMeetin
 }
 
 Shift MeetTile::over_ground(BandRows& bands, int x, int y, const DepthPlane::Range& range) const {
-    const SkimmingRay ray{{bands, depth_, x, y, range.front}, ground_, std::min<double>(bands.end(x), range.farthest)};
+    const double end = bands.end(x);
+    const SkimmingRay ray{
+        {bands, depth_, x, y, range.front}, ground_, std::min<double>(end, range.farthest), end <= range.farthest};
     switch (how_) {
         case DepthMeeting::March:
             return skim(ray, range.nearest);

@@ -20,6 +20,9 @@
 /// itself stands in for the pixels upon it (mirage.h): they are in no such ray's way, the ray ends where it meets the
 /// plane, and it leaps over them as far as no object is about. For FixedPoint and Own, too, the depth of such a pixel
 /// is where the ray ends, or the farthest one if it passes over the ground for good. Other rays meet ground as ever.
+/// Such a ray may pass behind an object, where the plate does not show it, and comes out again or ends on ground that is
+/// hidden: the ground beside it that is as deep stands in, as far as kFarthestAside. Where there is none, it is the last
+/// visible point before the object's outline, and stands back from its antialiased rim, by kFarthestBack at most.
 #pragma once
 
 #include <algorithm>
@@ -36,6 +39,9 @@ enum class DepthMeeting { March, FixedPoint, Own };
 inline constexpr int kFixedPointSteps = 8;
 /// [px]
 inline constexpr float kMarchStep = 0.5f, kMarchError = 0.001f;
+/// [px]
+inline constexpr float kFarthestBack = 4;
+inline constexpr int kFarthestAside = 256;
 /// A path that needs more steps than this, beyond any plausible warp, ends where they do.
 inline constexpr int kMostMarchSteps = 1024;
 /// A pixel fronts its neighbour if it is nearer than this part of the neighbour's depth, and of where the plane through

@@ -176,10 +176,13 @@ double Mirage::largest_shift(const PixelWindow& window) const {
     return highest > 0 ? kScanError * px_ * bend * way : 0;
 }
 
-bool Mirage::ray(int x, int y, PixelRay& out) const {
+bool Mirage::ray(int x, int y, PixelRay& out, const Launch& launch) const {
     const Frame f = frame(x + 0.5, y + 0.5);
     if (!(f.w >= low_ && f.w <= high_ && f.H > 0 && high_ > low_ && f.along > kLeastAdvance)) return false;
-    out.ray = LayerRay(optics_, f.H, f.w);
+    const double H = f.H + launch.lift, w = f.w + launch.tilt * f.along;
+    const bool starts = H > 0 && std::abs(w) <= 1;
+    out.launch = starts ? launch : Launch{};
+    out.ray = starts ? LayerRay(optics_, H, w) : LayerRay(optics_, f.H, f.w);
     out.along = f.along;
     out.across = lift_;
     out.end = f.along * out.ray.hit() - lift_ * f.H;
@@ -187,6 +190,43 @@ bool Mirage::ray(int x, int y, PixelRay& out) const {
     out.shift_x = camera_.f_px * (right_ - lift_ * f.slope.x);
     out.shift_y = -camera_.f_px * camera_.pixel_aspect * (up_ - lift_ * f.slope.y);
     return true;
+}
+
+double Mirage::elevation(int x, int y) const {
+    return frame(x + 0.5, y + 0.5).w;
+}
+
+double Mirage::anchor(const PixelRay& pixel) const {
+    if (std::isfinite(pixel.end)) return pixel.end;
+    const double way = pixel.ray.turn();
+    return way > 0 ? std::max(0.0, pixel.along * way + pixel.across * pixel.ray.climb(way)) : 0;
+}
+
+void Mirage::response(int x, int y, const PixelRay& pixel, std::span<const double> z, std::span<double> A,
+                      std::span<double> B) const {
+    constexpr double kPartOfHeight = 1e-3;
+    const double lift = kPartOfHeight * frame(x + 0.5, y + 0.5).H, tilt = quarter_pixel();
+    const auto differences = [&](const Launch& step, double size, std::span<double> out) {
+        PixelRay up, down;
+        double width = 2 * size;
+        if (!ray(x, y, up, step) || !ray(x, y, down, {-step.lift, -step.tilt})) return;
+        // a ray on the other side of the critical angle ends elsewhere
+        if (std::isfinite(up.end) != std::isfinite(pixel.end)) up = pixel, width = size;
+        if (std::isfinite(down.end) != std::isfinite(pixel.end)) down = pixel, width -= size;
+        for (std::size_t k = 0; k < z.size(); ++k) {
+            const double way = std::min(z[k], pixel.end);
+            out[k] = width > 0 ? (rise(up, way) - rise(down, way)) / width : 0;
+        }
+    };
+    differences({lift, 0}, lift, A);
+    differences({0, tilt}, tilt, B);
+}
+
+Mirage::Axes Mirage::axes(int x, int y) const {
+    const StraightRay ray = straight_ray(camera_, x + 0.5, y + 0.5);
+    const dvec3 side = glm::cross(normal_, ray.direction);
+    const double length = glm::length(side);
+    return {image_shift(camera_, ray, normal_), length > 0 ? image_shift(camera_, ray, side / length) : dvec2(0, 0)};
 }
 
 void check_surfaces(std::span<const Mirage> mirages, std::span<const std::string> names) {
@@ -199,25 +239,6 @@ void check_surfaces(std::span<const Mirage> mirages, std::span<const std::string
                                 "bent by both and "
                                 "their mirages do not add; keep one of them",
                                 names[i], names[j]));
-}
-
-void MirageRow::start(const Mirage& mirage, int y, double gain) {
-    mirage_ = &mirage;
-    y_ = y;
-    known_ = false;
-    gain_ = static_cast<float>(gain);
-}
-
-double MirageRow::end(int x) {
-    return ready(x) ? pixel_.end : kInfinity;
-}
-
-void MirageRow::add_constant_depth(int x0, int n, double z, float* uv) {
-    for (int i = 0; i < n; ++i) {
-        const Shift d = at(x0 + i, z);
-        uv[2 * i] += d.x;
-        uv[2 * i + 1] += d.y;
-    }
 }
 
 }  // namespace eikonal

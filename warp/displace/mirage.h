@@ -39,6 +39,11 @@ inline constexpr double kGroundTolerance = 0.005;
 /// |cosine| between the normals of two surfaces from which they do not add.
 inline constexpr double kParallelSurfaces = 0.5;
 
+/// Another start of a pixel's ray: higher over the plane [m], and steeper, in metres a metre of axial depth.
+struct Launch {
+    double lift = 0, tilt = 0;
+};
+
 /// One surface for one camera. Immutable, thread-safe. A function of camera and medium alone.
 class Mirage {
   public:
@@ -66,14 +71,35 @@ class Mirage {
         double along = 1, across = 0;     ///< z = along σ + across (h - H)
         double end = 0;                   ///< axial depth where it meets the plane; infinite if never
         double shift_x = 0, shift_y = 0;  ///< d of δ = 1 at z = 1
+        Launch launch;
     };
     /// False if the pixel moves by less than kMirageThreshold at any depth; `out` is then untouched.
-    bool ray(int x, int y, PixelRay& out) const;
+    bool ray(int x, int y, PixelRay& out, const Launch& launch = {}) const;
+    /// δ at axial depth z, from the pixel's own straight ray [m]: that of its end beyond that.
+    double rise(const PixelRay& pixel, double z) const {
+        const double way = z < pixel.end ? z : pixel.end;
+        return pixel.ray.rise_where(z, pixel.along, pixel.across) + pixel.launch.lift + pixel.launch.tilt * way;
+    }
     Shift shift(const PixelRay& pixel, double z) const {
-        const double rise = pixel.ray.rise_where(z, pixel.along, pixel.across);
-        const double scale = perspective_ ? rise / (z < pixel.end ? z : pixel.end) : rise;
+        const double scale = rise(pixel, z) / (perspective_ ? (z < pixel.end ? z : pixel.end) : 1);
         return {static_cast<float>(scale * pixel.shift_x), static_cast<float>(scale * pixel.shift_y)};
     }
+    /// Axial depth where a pixel's ray turns round over the plane or meets it; 0 if it does neither.
+    double anchor(const PixelRay& pixel) const;
+    /// A = ∂h/∂H and B = ∂h/∂(slope by depth) of a pixel's bent ray, at axial depths z, ascending; up to its end.
+    void response(int x, int y, const PixelRay& pixel, std::span<const double> z, std::span<double> A,
+                  std::span<double> B) const;
+    /// d at z = 1 of a bend of one metre across the plane, and along it at right angles to the pixel's ray.
+    struct Axes {
+        dvec2 across, along;
+    };
+    Axes axes(int x, int y) const;
+    /// Sine of a pixel's elevation over the plane, and of a quarter of a pixel.
+    double elevation(int x, int y) const;
+    /// Which way it bends rays, and lifts or lowers where they are: 1 up, from a hot surface, -1 down, to a cold one.
+    double way() const { return optics_.sign; }
+    double quarter_pixel() const { return 0.25 / px_; }
+    bool perspective() const { return perspective_; }
 
   private:
     struct Frame;
@@ -98,37 +124,5 @@ class Mirage {
 
 /// UserError if two of these surfaces do not add. `mirages` are of one camera; names: what messages call them.
 void check_surfaces(std::span<const Mirage> mirages, std::span<const std::string> names);
-
-/// A row of pixels of one mirage.
-class MirageRow {
-  public:
-    /// mirage must outlive this. gain multiplies d.
-    void start(const Mirage& mirage, int y, double gain = 1);
-    /// Displacement of pixel column x for an object at axial depth z > 0.
-    Shift at(int x, double z) { return ready(x) ? scaled(mirage_->shift(pixel_, z)) : Shift{}; }
-    /// Adds that of columns [x0, x0 + n) at one depth into interleaved (u, v).
-    void add_constant_depth(int x0, int n, double z, float* uv);
-    /// Whether pixel x moves at all; and where its ray meets the plane [m], infinite if never or if it does not move.
-    bool moves(int x) { return ready(x); }
-    double end(int x);
-    const Mirage& mirage() const { return *mirage_; }
-
-  private:
-    bool ready(int x) {
-        if (x != x_ || !known_) {
-            x_ = x;
-            known_ = true;
-            moves_ = mirage_->ray(x, y_, pixel_);
-        }
-        return moves_;
-    }
-    Shift scaled(Shift d) const { return {gain_ * d.x, gain_ * d.y}; }
-
-    const Mirage* mirage_ = nullptr;
-    int y_ = 0, x_ = 0;
-    bool known_ = false, moves_ = false;
-    float gain_ = 1;
-    Mirage::PixelRay pixel_;
-};
 
 }  // namespace eikonal

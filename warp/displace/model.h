@@ -2,11 +2,13 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "noise/error.h"
+#include "warp/image/linear_image.h"
 #include "warp/scene/scene.h"
 
 namespace eikonal {
@@ -38,15 +40,26 @@ inline constexpr double kLargestShift = 1e6;
 struct DisplacerSettings {
     int width = 0, height = 0;  ///< of the display window
     double pixel_aspect = 1;
-    double fps = kDefaultFps;    ///< frame F is at t = (F - first_frame)/fps
-    std::optional<double> fov;   ///< overrides the scene's camera
-    double far = 0;              ///< greatest axial distance [m] > 0: what lies beyond is displaced as at `far`
+    double fps = kDefaultFps;   ///< frame F is at t = (F - first_frame)/fps
+    std::optional<double> fov;  ///< overrides the scene's camera
+    /// Axial distance [m] > 0 of the background: thin screens fill the air up to it, and what is settled once a shot
+    /// (tables, sizes, warnings) holds up to it.
+    double far = 0;
+    double deepest = 0;  ///< of any object [m], if that may be farther than `far`
+    /// Pixels that maps may be asked for, where they are not the display window's alone. Called if media outside of
+    /// that are there, once a shot.
+    std::function<PixelWindow()> overscan;
     std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
     /// Media that move no pixel by more than this before any gain are left out [px] >= 0.
     double negligible = kNegligibleShift;
     bool sample_errors = false;     ///< stated_error() will be asked for
     bool (*cancelled)() = nullptr;  ///< asked now and then; true ends the frame with a FrameError
 };
+
+/// Whether a depth lies beyond `far`, rounding to float aside.
+inline bool is_beyond(double depth, double far) {
+    return depth > far * (1 + 1e-6);
+}
 
 /// FrameError if a run has been cancelled. Cheap beside a ray.
 inline void check_cancelled(bool (*cancelled)()) {

@@ -27,7 +27,9 @@ class BentRay {
             const double length = glm::length(p);
             const dvec3 direction = p / length;
             const double left = target - z_;
-            if (const double clear = field_.clear_way(x, direction) / length; clear > 0) {
+            // where there is force there is a medium
+            const bool within = force_known_ && force_ != dvec3(0);
+            if (const double clear = within ? 0 : field_.clear_way(x, direction) / length; clear > 0) {
                 if (clear >= left) break;
                 drift(clear);
                 z_ += clear;
@@ -74,7 +76,10 @@ class BentRay {
         return first + (longest_ - 1) * field_.longest_step(x + first * direction, direction);
     }
 
-    void drift(double h) { x1_ += h * slope_; }
+    void drift(double h) {
+        x1_ += h * slope_;
+        force_known_ = false;
+    }
 
     dvec3 acceleration(double z, const dvec3& x1, const dvec3& slope) {
         const dvec3 x = ray_.at(z) + x1, p = ray_.direction + slope;
@@ -86,14 +91,17 @@ class BentRay {
         return (ray_.length * ray_.length / (launch_ * launch_)) * force;
     }
 
-    /// Nyström's method: the force at the start, twice the middle in one, the end.
+    /// Nyström's method: the force at the start, twice the middle in one, the end. The end's serves for the next start:
+    /// the two are apart by a part of the second order that falls with h³.
     void step(double h) {
-        const dvec3 f1 = acceleration(z_, x1_, slope_);
+        const dvec3 f1 = force_known_ ? force_ : acceleration(z_, x1_, slope_);
         const dvec3 f2 =
             acceleration(z_ + 0.5 * h, x1_ + (0.5 * h) * slope_ + (h * h / 8) * f1, slope_ + (0.5 * h) * f1);
         const dvec3 f3 = acceleration(z_ + h, x1_ + h * slope_ + (h * h / 2) * f2, slope_ + h * f2);
         x1_ += h * slope_ + (h * h / 6) * (f1 + 2.0 * f2);
         slope_ += (h / 6) * (f1 + 4.0 * f2 + f3);
+        force_ = f3;
+        force_known_ = true;
     }
 
     const FieldInstant& field_;
@@ -102,6 +110,8 @@ class BentRay {
     double launch_;  ///< |dx/du| at the camera, hence metres of ray a unit of u where the straight ray is
     double z_ = 0;
     dvec3 x1_{0, 0, 0}, slope_{0, 0, 0};
+    dvec3 force_{0, 0, 0};  ///< where the last step ended
+    bool force_known_ = false;
     int steps_ = 0;
     bool ended_ = false;
 };

@@ -30,8 +30,13 @@ inline constexpr double kStep = 2;
 inline constexpr double kNoiseStep = 0.5;
 /// The step by which second-order itself is judged.
 inline constexpr double kFineStep = 0.5;
+/// What longest steps over surfaces are multiplied by besides: the closed form that they judge is exact.
+inline constexpr double kSurfaceStep = 1.0 / 16;
 /// Where its blobs end [σ]: e^{-16} of each is left out.
 inline constexpr double kRayBlobReach = 4;
+/// The same of the rays that judge the closed form: e^{-12}, much less than the second order that they are there to
+/// find.
+inline constexpr double kJudgedBlobReach = 3.5;
 /// Rms error of a lattice's force that its spline is made finer for, relative to the rms, where memory permits.
 inline constexpr double kSecondOrderSplineError = 0.003;
 /// Rms error of shifts with kStep against kFineStep, relative to the rms shift. (tests/second_order_test.cpp)

@@ -10,6 +10,9 @@
 /// but without interpolation between nodes (bent_pixel), and meets the depth buffer in the same way as the map, but
 /// where depth is smooth the surface through its pixels and no facet (meet_surface). *added*
 ///
+/// Where a ray ends on a heated surface and the depth buffer has a hole, it is followed through the plane, as the tracer
+/// follows it: a map ends it there.
+///
 /// So the figure holds the model's own approximations: the order of the perturbation, tables, nodes, depths between
 /// layers and between pixels, and how media act on each other. It does not hold what no map can mend: that a plate does
 /// not show what its own foreground hides, and moves as one with it beside an edge. Compare it with the true error on
@@ -27,7 +30,7 @@ namespace eikonal {
 
 inline constexpr int kErrorCandidates = 2048, kDepthStrata = 8;
 /// Samples of a map: one for so many of its pixels, at most kErrorSamples; half as many where there are blobs, among
-/// which a ray takes ten times as long; but never fewer than the fewest.
+/// which a ray takes several times as long; but never fewer than the fewest.
 inline constexpr int kPixelsPerSample = 2048, kErrorSamples = 256, kFewestErrorSamples = 64;
 /// Pixels as near to an edge [px], or as near as they are moved, up to kFarthestEdge, are beside it.
 inline constexpr int kEdgeReach = 3, kFarthestEdge = 32;

@@ -1,29 +1,13 @@
 #include "warp/scene/scene.h"
 
-#include <fmt/format.h>
-
-#include "noise/error.h"
 #include "noise/random.h"
 #include "warp/scene/schema.h"
 #include "warp/scene/settings.h"
 #include "warp/scene/text_file.h"
-#include "warp/scene/toml_guard.h"
 
 namespace eikonal {
 
 namespace {
-
-toml::table parse_text(std::string_view text, const std::string& name) {
-    if (const std::size_t line = scene_file::too_dotted_line(text))
-        throw UserError(fmt::format("{}:{}: more than {} dots in keys and text; shorten the file", name, line,
-                                    scene_file::kMostDots));
-    try {
-        return toml::parse(text, name);
-    } catch (const toml::parse_error& error) {
-        throw UserError(
-            scene_file::printable(fmt::format("{}: {}", scene_file::place(error.source(), name), error.description())));
-    }
-}
 
 /// Every medium draws its own numbers, even where the file gives all the same seed.
 void mix_seeds(Scene& scene, std::uint64_t scene_seed) {
@@ -42,9 +26,7 @@ void mix_seeds(Scene& scene, std::uint64_t scene_seed) {
 
 Scene parse_scene(std::string_view text, const std::filesystem::path& name, const std::vector<std::string>& settings,
                   std::optional<std::uint64_t> seed) {
-    toml::table root = parse_text(text, name.string());
-    for (const std::string& setting : settings) scene_file::apply_setting(root, setting);
-
+    const toml::table root = scene_file::parse_root(text, name.string(), settings);
     Scene scene;
     scene.file = name;
     scene_file::read_scene({root, "", scene.file}, scene);

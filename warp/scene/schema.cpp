@@ -237,7 +237,7 @@ static Keys keys(BlobSourceSpec& s) {
         {"sigma", "radius [m]", s.sigma, {within(kBlobSigma)}},
         {"cooling", "[1/s]", s.cooling, {at_least(0)}},
         {"growth", "of sigma squared, by diffusion [m²/s]", s.growth, {at_least(0)}},
-        {"lifetime", "[s]", s.lifetime, {within(kBlobLifetime)}},
+        Key("lifetime", "of each blob [s]", s.lifetime, {within(kBlobLifetime)}).required(),
     };
 }
 

@@ -11,6 +11,7 @@
 
 #include "noise/error.h"
 #include "warp/scene/message.h"
+#include "warp/scene/table.h"
 #include "warp/scene/toml_guard.h"
 
 namespace eikonal::scene_file {
@@ -140,6 +141,20 @@ void apply_setting(toml::table& root, const std::string& text) {
         slot.remove();
     else
         slot.assign(std::move(*value.get(kValue)));
+}
+
+toml::table parse_root(std::string_view text, const std::string& name, const std::vector<std::string>& settings) {
+    if (const std::size_t line = too_dotted_line(text))
+        throw UserError(
+            fmt::format("{}:{}: more than {} dots in keys and text; shorten the file", name, line, kMostDots));
+    toml::table root;
+    try {
+        root = toml::parse(text, name);
+    } catch (const toml::parse_error& error) {
+        throw UserError(printable(fmt::format("{}: {}", place(error.source(), name), error.description())));
+    }
+    for (const std::string& setting : settings) apply_setting(root, setting);
+    return root;
 }
 
 }  // namespace eikonal::scene_file

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <toml++/toml.h>
+
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace eikonal::scene_file {
 
@@ -13,5 +16,8 @@ inline constexpr std::size_t kDeepestKey = 8;
 /// array's last are made where missing. The value is a TOML value, a bare word is text, and nothing removes the key.
 /// Nodes made here name the option as their source. Throws UserError that starts with "--set KEY=VALUE: ".
 void apply_setting(toml::table& root, const std::string& setting);
+
+/// The tables of a scene's text, which came from the file `name`, with the settings. Throws UserError.
+toml::table parse_root(std::string_view text, const std::string& name, const std::vector<std::string>& settings);
 
 }  // namespace eikonal::scene_file

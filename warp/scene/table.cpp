@@ -192,6 +192,9 @@ void read_table(const Entry& entry, const std::vector<Key>& keys) {
     for (const Key& key : keys)
         if (const toml::node* node = table->get(key.name_)) key.read_(entry_of(key, *node));
     for (const Key& key : keys)
+        if (key.required_ && !table->contains(key.name_))
+            fail(entry, fmt::format("{} is missing; give it ({})", key.name_, key.meaning_));
+    for (const Key& key : keys)
         if (key.default_ && !table->contains(key.name_)) key.default_();
     for (const Key& key : keys) {
         const toml::node* node = table->get(key.name_);

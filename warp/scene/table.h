@@ -92,6 +92,11 @@ class Key {
         default_ = std::move(set_default);
         return *this;
     }
+    /// It may not be left out.
+    Key& required() {
+        required_ = true;
+        return *this;
+    }
     /// Applies only while the other key has one of these values.
     template <class E>
     Key& only_with(std::string_view other, const E& value, std::vector<E> allowed);
@@ -116,6 +121,7 @@ class Key {
     std::function<void(const Entry&)> read_;
     std::function<void()> default_;
     Rules given_, always_;
+    bool required_ = false;
 };
 
 /// Reads a table into the targets of its keys and applies their rules.
