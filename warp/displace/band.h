@@ -122,6 +122,7 @@ class BandRows {
         for (std::size_t i = 0; i < bands.size(); ++i) rows_[i].start(bands[i], y);
         mirages_.resize(mirages.size());
         has_air_ = false;
+        end_ = 0;
         for (std::size_t i = 0; i < mirages.size(); ++i) {
             const bool bent = air != nullptr && air->belongs_to(mirages[i]) && air->touches(y);
             has_air_ = has_air_ || bent;
@@ -159,10 +160,14 @@ class BandRows {
         return moves;
     }
     double end(int x) {
+        if (end_ > 0) return end_;
         double end = std::numeric_limits<double>::infinity();
         for (MirageRow& row : mirages_) end = std::min(end, row.end(x));
         return end;
     }
+
+    /// Says end() from now on: of one pixel whose ray is better known.
+    void end_at(double z) { end_ = z; }
 
   private:
     bool carried(int x) {
@@ -175,6 +180,7 @@ class BandRows {
     std::vector<BandRow> rows_;
     std::vector<MirageRow> mirages_;
     bool has_air_ = false;
+    double end_ = 0;  ///< if > 0: what end() says
 };
 
 }  // namespace eikonal

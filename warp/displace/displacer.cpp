@@ -29,6 +29,11 @@ int tile_side(int picture, int largest) {
 constexpr int kAirTileLength = 2048, kAirTileWidth = 128;
 /// How far beyond a tile, in pictures, the air is looked up; farther out it is that of the border.
 constexpr double kAirAround = 0.5;
+/// Where the air of a mirage's rays begins to be told apart, as a part of the farthest depth: objects need no layers
+/// before them, but rays turn there.
+constexpr double kNearestAir = 1.0 / 64;
+/// To a float's precision.
+constexpr int kMeetingHalvings = 30;
 /// Between nodes and layers the interpolant may exceed them by this factor.
 constexpr double kOvershoot = 1.6;
 /// Least depth that layers are made for [m]: nearer ones move as at this one, which is not at all.
@@ -78,6 +83,9 @@ struct Displacer::Instant::State {
             std::any_of(mirages.begin(), mirages.end(), [&](const Mirage& m) { return m.touches(window); });
         return any ? mirages : std::span<const Mirage>{};
     }
+    /// Axial depth where the bent ray of a pixel alone, known at these depths, first meets a surface; infinite if
+    /// never.
+    double meeting_with_surface(BandRows& row, const std::vector<double>& depths, int x, int y) const;
     /// Whether a sample's ray ends on a surface where the depth buffer has a hole: the tracer's goes on through it.
     bool falls_through(BandRows& row, const DepthPlane& depth, const SamplePixel& p) const;
     /// The mirage that bends the rays of a tile through other media; null if there are none or they stay straight.
@@ -120,6 +128,29 @@ PixelWindow Displacer::Instant::State::air_around(const Mirage& mirage, const Pi
         y1 = std::max(y1, y + dy + 1);
     }
     return {x0, y0, x1 - x0, y1 - y0};
+}
+
+double Displacer::Instant::State::meeting_with_surface(BandRows& row, const std::vector<double>& depths, int x,
+                                                       int y) const {
+    const auto below = [&](double z) {
+        const Shift d = row.at(x, z);
+        const dvec3 there = straight_ray(camera, x + 0.5 + d.x, y + 0.5 + d.y).at(z);
+        return std::any_of(media->surface_layers().begin(), media->surface_layers().end(),
+                           [&](const SurfaceLayer& surface) { return surface.height(there) < 0; });
+    };
+    double above = 0;
+    for (double z : depths) {
+        if (!below(z)) {
+            above = z;
+            continue;
+        }
+        for (int i = 0; i < kMeetingHalvings; ++i) {
+            const double middle = 0.5 * (above + z);
+            (below(middle) ? z : above) = middle;
+        }
+        return z;
+    }
+    return std::numeric_limits<double>::infinity();
 }
 
 bool Displacer::Instant::State::falls_through(BandRows& row, const DepthPlane& depth, const SamplePixel& p) const {
@@ -255,10 +286,11 @@ std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window
     return sample_errors(choose_samples(window, depth, uv, samples), [&](const SamplePixel& p) {
         const PixelWindow pixel{p.x, p.y, 1, 1};
         const std::vector<Band> bands{bent_pixel(bent, s.camera, p.x, p.y, plane ? s.farthest : p.depth)};
-        // the bent ray has passed over the surfaces: mirages only tell where it ends
+        // the bent ray has passed over the surfaces: mirages only tell which pixels they move
         std::span<const Mirage> mirages = s.mirages_on(pixel);
         BandRows row;
         row.start(bands, p.y, mirages, 0);
+        if (row.mirage_moves(p.x)) row.end_at(s.meeting_with_surface(row, bands.front().depths, p.x, p.y));
         if (plane && s.falls_through(row, **plane, p)) row.start(bands, p.y, mirages = {});
         std::array<float, 2> d{};
         if (plane) {
@@ -285,8 +317,11 @@ Displacer::Displacer(Displacer&&) noexcept = default;
 Displacer::Instant Displacer::at(double frame, double nearest, double farthest, double gain) const {
     nearest = std::max(nearest, kLeastDepth);
     farthest = std::max(nearest, farthest);
+    const MediaLayers& media = shot_->media;
+    const bool air_is_bent = !media.surfaces().empty() && !media.layers().empty();
+    if (air_is_bent) nearest = std::min(nearest, kNearestAir * farthest);
     auto state = std::make_unique<Instant::State>();
-    state->media = &shot_->media;
+    state->media = &media;
     state->camera = shot_->path.at(frame);
     state->nearest = nearest;
     state->farthest = farthest;
@@ -295,18 +330,17 @@ Displacer::Instant Displacer::at(double frame, double nearest, double farthest, 
     state->tile_width = tile_side(shot_->settings.width, kTileWidth);
     state->tile_height = tile_side(shot_->settings.height, kTileHeight);
     const double t = state->t = shot_->time(frame);
-    const MediaLayers& media = shot_->media;
     state->own = media.instants(state->camera, t, nearest, farthest, gain);
     if (media.second_order() && !state->own.empty())
         state->joint.push_back(media.together(state->own, state->camera, t, nearest, farthest, gain, false));
     for (const LayerInstant& layer : state->bending())
         state->blank.push_back(blank_bands(layer, state->camera, nearest, farthest));
-    for (const auto& [medium, spec] : shot_->media.surfaces()) {
-        state->mirages.emplace_back(spec, shot_->media.law(), shot_->scene.optics.exaggeration,
+    for (const auto& [medium, spec] : media.surfaces()) {
+        state->mirages.emplace_back(spec, media.law(), shot_->scene.optics.exaggeration,
                                     shot_->scene.optics.ray_equation, state->camera, farthest,
                                     fmt::format("medium.{}", medium));
     }
-    if (!state->mirages.empty() && !state->bending().empty()) {
+    if (air_is_bent) {
         const dvec2 across = state->mirages.front().axes(shot_->settings.width / 2, shot_->settings.height / 2).across;
         const bool upright = std::abs(across.y) >= std::abs(across.x);
         state->tile_width = tile_side(shot_->settings.width, upright ? kAirTileWidth : kAirTileLength);

@@ -18,6 +18,8 @@ int floor_block(int a) {
     return floor_div(a, DepthPlane::kBlock);
 }
 
+/// What is nearer than this part of a ray's depth is before it, and the ray does not run into it.
+constexpr double kBehind = 0.95;
 /// Of a hidden ray's next step, to kMarchStep.
 constexpr int kMostHalvings = 48;
 
@@ -240,6 +242,7 @@ Shift skim(const SkimmingRay& ray, double nearest) {
             const Shift last_open = bisect(ray, z, d, next, e);
             // what lies before the ray by then, and not beside what it was over, is an object that it passes behind
             if (met.stop >= z || met.seen >= facet.limit) return ray.settled(last_open);
+            if (met.stop >= kBehind * z) return last_open;  // its foot, on the ground
             if (!in_sight) in_sight = ray.stood_back(last_open, e, d);
             const Shift way{e.x - d.x, e.y - d.y};
             const auto [open, there] = follow_hidden(ray, {next, e});
