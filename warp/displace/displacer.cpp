@@ -158,6 +158,8 @@ bool Displacer::Instant::State::falls_through(BandRows& row, const DepthPlane& d
     if (!std::isfinite(end)) return false;
     const Shift d = row.at(p.x, end);
     const double x = std::floor(p.x + 0.5 + d.x), y = std::floor(p.y + 0.5 + d.y);
+    const PixelWindow& w = depth.window();
+    if (!(x >= w.x0 && x < w.x0 + w.width && y >= w.y0 && y < w.y0 + w.height)) return false;  // not known
     const double z = depth.at(static_cast<int>(x), static_cast<int>(y));
     const auto below = [&](const SurfaceLayer& surface) {
         double highest = -std::numeric_limits<double>::infinity();  // of what the pixel may show
