@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 trace=${BUILD:-build}/reference/eikonal-trace
 readme=samples/compare/README.md
-scenes=(weak strong folding silhouette wide near-far long-folding blobs mirage moving)
+scenes=(weak strong folding silhouette wide near-far long-folding blobs mirage mirage-plumes moving)
 
 for scene in "${scenes[@]}"; do
     echo "$scene"

@@ -84,18 +84,35 @@ struct SkimmingRay : Ray {
         return false;
     }
     /// d, or where the picture's samples there mix in something much nearer, a point beside it that is as deep and
-    /// clear of it; the centre of the facet if there is none.
+    /// clear of it; the centre of the facet if there is none. Off the ground, only outlines across the way that the
+    /// mirage moves the picture matter: the others move along themselves.
     Shift settled(Shift d) const {
         const auto [seen, stop, limit] = under(d);
         if (!at_edge(d, limit)) return d;
-        constexpr std::array<std::array<float, 2>, 8> kWays{
-            {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
-        for (float aside = 0.5f; aside <= kFarthestBack; aside += 0.5f)
-            for (const auto& [wx, wy] : kWays) {
-                const Shift there{d.x + aside * wx, d.y + aside * wy};
-                const float beside = under(there).seen;
-                if (beside >= kEdgeRatio * seen && kEdgeRatio * beside <= seen && !at_edge(there, limit)) return there;
+        const auto beside = [&](float wx, float wy) { return Shift{d.x + wx, d.y + wy}; };
+        const auto alike = [&](Shift there) {
+            const float z = under(there).seen;
+            return z >= kEdgeRatio * seen && kEdgeRatio * z <= seen;
+        };
+        if (limit == seen) {
+            constexpr std::array<std::array<float, 2>, 8> kWays{
+                {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+            for (float aside = 0.5f; aside <= kFarthestBack; aside += 0.5f)
+                for (const auto& [wx, wy] : kWays)
+                    if (const Shift there = beside(aside * wx, aside * wy); alike(there) && !at_edge(there, limit))
+                        return there;
+        } else if (const float length = std::sqrt(d.x * d.x + d.y * d.y); length > 1) {
+            constexpr float kRim = 1.5f;
+            const float wx = d.x / length, wy = d.y / length;
+            const auto object = [&](float way) { return under(beside(way * wx, way * wy)).seen < limit; };
+            for (const float side : {1.0f, -1.0f}) {
+                if (!object(side * kRim) || object(-side * kRim)) continue;
+                for (float back = 0.5f; back <= kRim; back += 0.5f)
+                    if (const Shift there = beside(-side * back * wx, -side * back * wy);
+                        alike(there) && !object(side * (kRim - back)))
+                        return there;
             }
+        }
         return {static_cast<float>(whole(d.x + 0.5f)), static_cast<float>(whole(d.y + 0.5f))};
     }
     /// The last point d before the ray passes behind an object at `blocked`, moved back from the object's outline until
