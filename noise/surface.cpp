@@ -43,6 +43,7 @@ SurfaceLayer::SurfaceLayer(const SurfaceSpec& spec, const IndexLaw& law)
       surface_(spec.surface_temperature),
       ambient_(law.ambient_temperature),
       excess_(surface_ - ambient_),
+      inverse_ambient_(1 / ambient_),
       scale_(law.refractivity * law.T0),
       plain_(ambient_ <= kPlainRatio * surface_) {
     // |n - n_a| ∝ e/(T_a + excess e) falls to kNegligibleIndex of itself at e = kNegligibleIndex T_a/(T_S - …).
@@ -53,22 +54,23 @@ SurfaceLayer::SurfaceLayer(const SurfaceSpec& spec, const IndexLaw& law)
     largest_slope_ = surface_ > 2 * ambient_ ? scale_ / (4 * ambient_ * dropoff_) : std::abs(slope(0));
 }
 
-SurfaceLayer::State SurfaceLayer::state(double h) const {
+[[gnu::always_inline]] inline SurfaceLayer::State SurfaceLayer::state(double h) const {
     const double x = h * inverse_dropoff_;
     const double e = portable::exp(-x), D = excess_ * e;
-    return {plain_ ? ambient_ + D : surface_ * e + ambient_ * one_minus_exp(x), D};
+    const double T = plain_ ? ambient_ + D : surface_ * e + ambient_ * one_minus_exp(x);
+    return {T, D, 1 / T};
 }
 
 double SurfaceLayer::above_ambient(const State& s) const {
-    return -scale_ * (s.D / s.T / ambient_);
+    return -scale_ * (s.D * s.inverse_T * inverse_ambient_);
 }
 
 double SurfaceLayer::slope(const State& s) const {
-    return scale_ * (s.D / s.T / s.T * inverse_dropoff_);
+    return scale_ * (s.D * s.inverse_T * s.inverse_T * inverse_dropoff_);
 }
 
 double SurfaceLayer::curvature(const State& s) const {
-    return slope(s) * ((s.D - ambient_) / s.T * inverse_dropoff_);
+    return slope(s) * ((s.D - ambient_) * s.inverse_T * inverse_dropoff_);
 }
 
 double SurfaceLayer::height(const dvec3& x) const {

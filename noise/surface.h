@@ -62,9 +62,9 @@ class SurfaceLayer {
                           RayEquation equation = RayEquation::Physical) const;
 
   private:
-    /// T and T - T_a at h >= 0.
+    /// T, T - T_a and 1/T at h >= 0.
     struct State {
-        double T, D;
+        double T, D, inverse_T;
     };
     State state(double h) const;
     double above_ambient(const State& s) const;
@@ -74,6 +74,7 @@ class SurfaceLayer {
     dvec3 origin_, normal_;
     double dropoff_, inverse_dropoff_;   ///< d0, 1/d0
     double surface_, ambient_, excess_;  ///< T_S, T_a, T_S - T_a [K]
+    double inverse_ambient_;             ///< 1/T_a
     double scale_;                       ///< A [K]
     bool plain_;                         ///< T = T_a + D keeps its digits
     double top_, knee_, largest_slope_;
