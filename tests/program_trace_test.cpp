@@ -157,7 +157,8 @@ TEST_F(Trace, BothProgramsNameThePlaceOfWhatIsWrong) {
         words.insert(words.begin(), "map");
         refused(run(words), 2, {"eikonal: " + place + ": " + what});
     };
-    const std::string many = "[[medium]]\ntype = \"blobs\"\nsource = [{rate = 1, lifetime = 5},\n{rate = 1e6, lifetime = 100}]\n";
+    const std::string many =
+        "[[medium]]\ntype = \"blobs\"\nsource = [{rate = 1, lifetime = 5},\n{rate = 1e6, lifetime = 100}]\n";
     both(many, {}, "scene.toml:6", "medium.0.source.1.rate = ");
     both(many, {"medium.0.source.1.rate=2e6"}, "--set medium.0.source.1.rate=2e6", "medium.0.source.1.rate = ");
     // Of keys that are left out: what they belong to.

@@ -10,8 +10,8 @@
 /// but without interpolation between nodes (bent_pixel), and meets the depth buffer in the same way as the map, but
 /// where depth is smooth the surface through its pixels and no facet (meet_surface). *added*
 ///
-/// Where a ray ends on a heated surface and the depth buffer has a hole, it is followed through the plane, as the tracer
-/// follows it: a map ends it there.
+/// Where a ray ends on a heated surface and the depth buffer has a hole, it is followed through the plane, as the
+/// tracer follows it: a map ends it there.
 ///
 /// So the figure holds the model's own approximations: the order of the perturbation, tables, nodes, depths between
 /// layers and between pixels, and how media act on each other. It does not hold what no map can mend: that a plate does
