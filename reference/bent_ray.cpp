@@ -61,7 +61,6 @@ class Tracer {
     double same_place() const;
     double clear_way() const;
     bool trapped();
-    bool hardly_moves();
     double nudge(double way);
     void enter(double reach, const dvec3& before);
     void finish(const SurfaceSearch::Met& met);
@@ -92,8 +91,6 @@ class Tracer {
     double turned_ = 0, turned_from_ = 0;
     dvec3 turned_at_{0};
     /// Where its pace was last looked at.
-    int paced_steps_ = 0;
-    double paced_length_ = 0;
     BentHit result_;
     std::array<Mark, SurfaceSearch::kMostPieces> marks_;                     ///< as many as were accepted are there
     std::optional<std::array<Bundle, SurfaceSearch::kMostPieces>> bundles_;  ///< beside them
@@ -124,23 +121,9 @@ double Tracer::clear_way() const {
     return may_be_clear(force_) ? field_.clear_way(state_.x, glm::normalize(state_.p)) : 0;
 }
 
-/// Whether it takes many times the budget to come to anything.
-bool Tracer::hardly_moves() {
-    const int steps = result_.steps - paced_steps_;
-    if (steps < kPaceSteps) return false;
-    const double pace = (result_.length - paced_length_) / steps;
-    paced_steps_ = result_.steps;
-    paced_length_ = result_.length;
-    const double remaining =
-        std::min(settings_.far - result_.length, (settings_.u_end - state_.u) * glm::length(state_.p));
-    return kPaceShare * pace * settings_.step_budget <
-           (geometry_ ? std::min(remaining, geometry_->clearance(state_.x)) : remaining);
-}
-
 /// Whether the ray gets nowhere.
 bool Tracer::trapped() {
     if (!settings_.end_trapped) return false;
-    if (hardly_moves()) return true;
     if (!(turned_ > kTrapTurn)) return false;
     if (glm::length(state_.x - turned_at_) < kTrapAdvance * (result_.length - turned_from_)) return true;
     turned_ = 0;

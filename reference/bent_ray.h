@@ -42,10 +42,9 @@ inline constexpr double kQuietShare = 100;
 /// The finest tolerance, tolerance_px * pixel, that is of use: tighter ones count as this [rad or m].
 inline constexpr double kFinestTolerance = 1e-13;
 /// A ray is trapped if it has turned through this angle [rad], every bend counted, on a way whose ends are closer to
-/// each other than this part of its length: what gets anywhere turns far less, or gets ahead. So is one that at the
-/// pace of its last kPaceSteps steps would come to no object, nor to its own end, with kPaceShare budgets.
-inline constexpr double kTrapTurn = 8 * 3.141592653589793, kTrapAdvance = 0.25;
-inline constexpr int kPaceSteps = 1000, kPaceShare = 10;
+/// each other than this part of its length: what gets anywhere turns far less, or gets ahead, as rays do in a guide
+/// that are less than 88 degrees from its axis.
+inline constexpr double kTrapTurn = 64 * 3.141592653589793, kTrapAdvance = 1.0 / 32;
 /// What adaptive reaches at its finest in the closed forms of PHYSICS 8 [m, and of p].
 inline constexpr double kClosedFormError = 1e-9;
 
@@ -98,7 +97,7 @@ struct BentHit {
     enum class End {
         Surface,     ///< met `surface`
         Escaped,     ///< went on for `far` metres, or to u_end: `at.p` tells which background it sees
-        Trapped,     ///< goes round and round or hardly on (kTrapTurn), or bends by more than numbers hold
+        Trapped,     ///< goes round and round (kTrapTurn), or bends by more than numbers hold
         Unfinished,  ///< its step budget ended it
         NoIndex      ///< came to where n <= 0
     };

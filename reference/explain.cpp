@@ -61,11 +61,11 @@ void explain(const Renderer& renderer, const Scene& scene, const RenderSettings&
         fmt::print("rays: {}, tolerance {:g} px; {:.3g} steps each\n", name_of(settings.rays.integrator),
                    settings.rays.tolerance_px, f.steps);
         if (const std::size_t n = p.pixels.trapped() - p.pixels.unfinished())
-            fmt::print("rays: {} of {} tried go round and round or hardly on: they are ended, their pixels black\n", n,
+            fmt::print("rays: {} of {} tried go round and round: they are ended, their pixels black\n", n,
                        p.pixels.width);
         if (const std::size_t n = p.pixels.unfinished())
             fmt::print(
-                "rays: {} of {} tried have a way to go that takes more than {} steps, {} of them more than the "
+                "rays: {} of {} tried have a way to go that takes more than {} steps, {} of them maybe more than the "
                 "{} of --step-budget\n",
                 n, p.pixels.width, p.step_limit, p.beyond, settings.rays.step_budget);
         if (const std::size_t n = p.pixels.without_index())

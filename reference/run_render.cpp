@@ -39,7 +39,7 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
             fmt::print(stderr, "frame {}: warning: {} of {} pixels {}\n", number, pixels, frame.id.size(), what);
     };
     warn(frame.trapped() - frame.unfinished(),
-         "hold rays that go round and round or hardly on (id -1, black): the media are too strong");
+         "hold rays that go round and round (id -1, black): the media are too strong");
     warn(frame.unfinished(), "hold rays that the step budget ended (id -3, black); --step-budget raises it");
     warn(frame.without_index(), "hold rays that came to where n <= 0 (id -2, black); lower [optics] exaggeration");
     if (!frame.magnification.empty())
@@ -61,18 +61,18 @@ void warn(const RenderOptions& o, int frame, const Renderer& renderer, const Pro
     };
     const std::size_t trapped = probe.pixels.trapped() - probe.pixels.unfinished();
     if (many(trapped))
-        fmt::print(
-            stderr,
-            "frame {}: warning: {} of {} rays tried go round and round or hardly on, their pixels are black: the "
-            "media are too strong\n",
-            frame, trapped, probe.pixels.width);
+        fmt::print(stderr,
+                   "frame {}: warning: {} of {} rays tried go round and round, their pixels are black: the "
+                   "media are too strong\n",
+                   frame, trapped, probe.pixels.width);
     if (!many(probe.beyond)) return;
     const double seconds = probe.time(static_cast<double>(renderer.width()) * renderer.height(), o.render.samples);
-    fmt::print(stderr,
-               "frame {}: warning: {} of {} rays tried will use up their {} steps and be black, in about {:.2g} {} a "
-               "frame: give the media bounds (falloff), or rays something to meet, or raise --step-budget\n",
-               frame, probe.beyond, probe.pixels.width, o.render.rays.step_budget,
-               seconds > 3600 ? seconds / 3600 : seconds, seconds > 3600 ? "h" : "s");
+    fmt::print(
+        stderr,
+        "frame {}: warning: {} of {} rays tried are on a way that may use up their {} steps and be black; a frame may "
+        "take {:.2g} {}: give the media bounds (falloff), or rays something to meet, or raise --step-budget\n",
+        frame, probe.beyond, probe.pixels.width, o.render.rays.step_budget, seconds > 3600 ? seconds / 3600 : seconds,
+        seconds > 3600 ? "h" : "s");
 }
 
 RenderedFrame render(const Renderer& renderer, const RenderOptions& o, int frame) {

