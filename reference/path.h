@@ -2,8 +2,9 @@
 ///
 /// Rows: the ray's origin, the end of every step, and as many points of the curve between as keep the direction from
 /// turning by more than kPathTurn from row to row. Of first and second order it is the perturbed curve itself
-/// (perturbation.h), which starts at the origin with the straight ray's p as all do. Numbers have the shortest form
-/// that reads back as the same double.
+/// (perturbation.h), which starts at the origin with the straight ray's p as all do, integrated until halving its steps
+/// moves its end by less than the tolerance (unless settings.step is given). Numbers have the shortest form that reads
+/// back as the same double.
 #pragma once
 
 #include <ostream>

@@ -133,17 +133,12 @@ RenderedFrame Renderer::planes(int width, int height, bool colour) const {
 }
 
 void Renderer::check_camera(int frame) const {
-    if (settings_.straight) return;
     const dvec3 at = camera(frame).position;
-    for (std::size_t i = 0; i < scene_.media.size(); ++i) {
-        const auto* surface = std::get_if<SurfaceSpec>(&scene_.media[i]);
-        if (!surface || surface->surface_temperature == scene_.optics.ambient_temperature) continue;
-        if (const double height = glm::dot(at - surface->origin, glm::normalize(surface->normal)); !(height > 0))
-            throw UserError(fmt::format(
-                "medium.{}.origin: at frame {} the camera at ({:g}, {:g}, {:g}) is {:g} m below this surface; it "
-                "must be above it: lower the surface, or turn its normal towards the camera",
-                i, frame, at.x, at.y, at.z, 0.0 - height));
-    }
+    if (const auto below = air_ ? air_->below_surface(at) : std::nullopt)
+        throw UserError(fmt::format(
+            "medium.{}.origin: at frame {} the camera at ({:g}, {:g}, {:g}) is {:g} m below this surface; it "
+            "must be above it: lower the surface, or turn its normal towards the camera",
+            below->medium, frame, at.x, at.y, at.z, below->depth));
 }
 
 std::optional<Renderer::Air> Renderer::air_at(int frame, const Camera& camera) const {

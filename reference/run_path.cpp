@@ -34,6 +34,12 @@ const char* ending(const BentHit& end) {
 int run(const PathOptions& o) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
     const SceneAir air(scene, o.rays);
+    // From the surface itself a ray may start.
+    if (const auto below = air.below_surface(o.origin); below && below->depth > 0)
+        throw UserError(fmt::format(
+            "--origin {:g},{:g},{:g}: is {:g} m below the surface of medium.{}, where there is no air; it must "
+            "not be below it: start higher, or lower the surface",
+            o.origin.x, o.origin.y, o.origin.z, below->depth, below->medium));
     TraceSettings trace = air.trace_settings(air.path().reference());
     trace.perspective = false;
     trace.pixel = 1;

@@ -1,6 +1,7 @@
 #include "reference/scene_air.h"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 
 #include "noise/memory.h"
 #include "warp/image/depth_map.h"
@@ -42,6 +43,16 @@ SceneAir::SceneAir(const Scene& scene, const RaySettings& settings)
 
 double SceneAir::time(int frame) const {
     return (static_cast<double>(frame) - scene_.time.first_frame) / scene_.time.fps.value_or(kDefaultFps);
+}
+
+std::optional<SceneAir::Below> SceneAir::below_surface(const dvec3& at) const {
+    for (std::size_t i = 0; i < scene_.media.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceSpec>(&scene_.media[i]);
+        if (!surface || surface->surface_temperature == scene_.optics.ambient_temperature) continue;
+        const double height = glm::dot(at - surface->origin, glm::normalize(surface->normal));
+        if (!(height > 0)) return Below{i, 0.0 - height};
+    }
+    return {};
 }
 
 TraceSettings SceneAir::trace_settings(const Camera& camera) const {

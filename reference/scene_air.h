@@ -35,6 +35,14 @@ class SceneAir {
     /// The scene's far distance, where the warp sees its background [m].
     double far() const { return far_; }
 
+    /// The first heated or cooled surface that the point does not lie above, and how far below it that is [m] >= 0:
+    /// there is no air.
+    struct Below {
+        std::size_t medium;
+        double depth;
+    };
+    std::optional<Below> below_surface(const dvec3& at) const;
+
     const CameraPath& path() const { return path_; }
     int width() const { return width_; }
     int height() const { return height_; }

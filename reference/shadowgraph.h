@@ -8,7 +8,8 @@
 /// ray stands for the same flux, hence energy is conserved: heat only moves light about.
 ///
 /// The sun counts as a point; other shapes than quads are lit by straight rays. Rays start `reach` before the quad, the
-/// greatest distance between any two of: camera, quads, and the bounds of spheres.
+/// greatest distance from it of: camera, quads, the bounds of spheres and Luneburg lenses, and where blobs may be. Air
+/// without bounds, which is everywhere, bends light from there on only.
 #pragma once
 
 #include <functional>

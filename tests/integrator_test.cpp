@@ -466,5 +466,34 @@ TEST(Path, OfFirstAndSecondOrderIsThePerturbedCurve) {
     EXPECT_LT(error[1], 0.3 * error[0]);
 }
 
+// In a rod F = -w² x⊥, w = n0 g, so that x1 and x2 of a straight ray are polynomials.
+TEST(Path, OfFirstAndSecondOrderKeepsTheTolerance) {
+    ProfileSpec rod = profile(ProfileKind::Rod);
+    rod.axis = {0, 0, 1};
+    rod.n0 = 1.5;
+    rod.g = 0.05;
+    const Air air({rod});
+    const dvec3 origin{0.5, 0.2, 0}, d = glm::normalize(dvec3(0.05, 0, 1));
+    const double u = 20, w2 = 1.5 * 1.5 * 0.05 * 0.05, speed = air.now.speed(origin);
+    for (const bool second : {false, true})
+        for (const double tolerance : {1e-5, 1e-8, 1e-11}) {
+            TraceSettings settings = usual();
+            settings.integrator = second ? Integrator::SecondOrder : Integrator::FirstOrder;
+            settings.perspective = false;
+            settings.pixel = 1;
+            settings.tolerance_px = tolerance;
+            settings.u_end = u;
+            std::ostringstream ignored;
+            const BentHit end = write_path(air.now, nullptr, origin, d, settings, ignored, "ray.csv");
+            EXPECT_EQ(end.end, BentHit::End::Escaped);
+            for (int k = 0; k < 2; ++k) {
+                const double a = origin[k], b = speed * d[k];
+                double x = a + b * u - w2 * (a * u * u / 2 + b * std::pow(u, 3) / 6);
+                if (second) x += w2 * w2 * (a * std::pow(u, 4) / 24 + b * std::pow(u, 5) / 120);
+                EXPECT_NEAR(end.at.x[k], x, tolerance) << second << k;
+            }
+        }
+}
+
 }  // namespace
 }  // namespace eikonal::reference
