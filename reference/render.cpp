@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
 
@@ -20,6 +21,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTileSize = 32;
 constexpr int kSightRays = 33;
+/// What is ahead of a ray is looked at in this part of the way to it.
+constexpr double kStrides = 16;
 constexpr float kTrappedId = -1, kNoIndexId = -2, kUnfinishedId = -3;
 /// Of a straight ray through its own hit, by rounding [px].
 constexpr double kRoundingShift = 1e-7;
@@ -40,6 +43,25 @@ float storable(double radiance) {
 
 std::size_t count(const std::vector<float>& values, float wanted) {
     return static_cast<std::size_t>(std::count(values.begin(), values.end(), wanted));
+}
+
+/// How many of the longest steps that the field allows there are along a straight ray, from here to there.
+double longest_steps(const FieldInstant& field, const dvec3& origin, const dvec3& direction, double from, double to) {
+    const double crossing = 1e-9 * (to + glm::length(origin));
+    double count = 0;
+    for (double w = from; w < to;) {
+        const dvec3 at = origin + w * direction;
+        double way = field.clear_way(at, direction);
+        if (way > 0) {
+            count += 1;
+        } else {
+            const double longest = field.longest_step(at, direction);
+            way = std::min({std::max(longest, (w - from) / kStrides), field.way_to_edge(at, direction), to - w});
+            count += way / longest;
+        }
+        w += way + crossing;
+    }
+    return count;
 }
 
 }  // namespace
@@ -236,12 +258,16 @@ Probe Renderer::try_rays(const Camera& camera, int frame, Air* air, const ProbeL
     return probe;
 }
 
-/// Of a ray that was given up: as if it went on to where the straight one ends.
+/// Of a ray that was given up: as if it went on, along the straight one and to where that ends, at the same number of
+/// steps for each of the longest that the field allows.
 double Renderer::steps_to_come(const Camera& camera, int x, int y, const Air& air, const BentHit& tried) const {
     const CameraRay ray = camera_ray(camera, x + 0.5, y + 0.5);
-    const auto hit = geometry_.nearest(ray.origin, glm::normalize(ray.direction), 0, air.trace.far);
-    const double ahead = std::max((hit ? hit->t : air.trace.far) - tried.length, 0.0);
-    return tried.length > 0 ? tried.steps * (ahead / tried.length) : kInfinity;
+    const dvec3 direction = glm::normalize(ray.direction);
+    const auto hit = geometry_.nearest(ray.origin, direction, 0, air.trace.far);
+    const double end = hit ? hit->t : air.trace.far;
+    const double taken = longest_steps(air.field, ray.origin, direction, 0, tried.length);
+    const double ahead = longest_steps(air.field, ray.origin, direction, tried.length, end);
+    return taken > 0 ? tried.steps * (ahead / taken) : kInfinity;
 }
 
 double Probe::time(double area, int samples_each) const {

@@ -274,6 +274,33 @@ TEST(Render, RaysWithoutAnEndAreMarkedAndBlack) {
 }
 
 // Parallel rays meet at the point opposite to where they enter, on the sphere itself.
+// Rays that were only tried: what they still take is told from the air ahead, here a layer that ends at some height.
+TEST(Render, AProbeKnowsTheStepsToCome) {
+    Scene scene = scene_with({quad({0, 0, -300}, {0, 0, 1}, 10)}, 20);
+    TurbulenceSpec air;
+    air.form = TurbulenceForm::Lattice;
+    air.cn2 = 1e-13;
+    air.outer_scale = 0.5;
+    air.inner_scale = 0.02;
+    air.lattice = {16, 16, 16, 2};
+    air.period = {1, 1, 1, 1};
+    air.falloff = Falloff{.length = 0.1};
+    scene.media = {air};
+    scene.camera.look_at = {0, 1.7, -1};
+    RenderSettings s = settings(0);
+    s.colour = false;
+    const Renderer renderer(scene, s);
+    const Probe probe = renderer.probe(1, {.first = 256, .most = 256, .steps = 40});
+    const RenderedFrame frame = renderer.render(1);
+    const auto mean = [](const std::vector<float>& steps) {
+        return std::accumulate(steps.begin(), steps.end(), 0.0) / static_cast<double>(steps.size());
+    };
+    const double tried = mean(probe.pixels.steps), expected = tried + probe.steps_to_come / 256;
+    EXPECT_GT(mean(frame.steps), 3 * tried);
+    EXPECT_NEAR(expected / mean(frame.steps), 1, 0.2);
+    EXPECT_EQ(probe.beyond, 0u);
+}
+
 TEST(Render, LuneburgLensFocusesParallelRays) {
     Scene scene = scene_with({sphere({0, 1.5, -6}, 0.05, {1, 0, 0}), quad({0, 1.5, -20}, {0, 0, 1}, 100)});
     ProfileSpec lens;
