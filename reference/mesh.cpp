@@ -82,6 +82,24 @@ class FaceCheck {
     std::array<List, 3> lists_{{{"v"}, {"vt"}, {"vn"}}};
 };
 
+/// The text with lines that end in a backslash joined to the next (not comments), as many lines as before.
+std::stringstream joined(std::istream& stream) {
+    std::stringstream result;
+    std::string text, owed;
+    while (std::getline(stream, text)) {
+        if (text.ends_with('\r')) text.pop_back();
+        if (text.ends_with('\\') && text.find('#') == text.npos) {
+            text.back() = ' ';
+            result << text;
+            owed += '\n';
+            continue;
+        }
+        result << text << '\n' << std::exchange(owed, {});
+    }
+    result << owed;
+    return result;
+}
+
 /// UserError if a line that should hold numbers or indices does not: tinyobjloader would take what it cannot read for
 /// 0. Leaves the stream at its start.
 void check_numbers(std::istream& stream, const std::filesystem::path& file) {
@@ -193,9 +211,10 @@ void mark_closed(Mesh& mesh) {
 }  // namespace
 
 Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset) {
-    std::ifstream stream(file);
-    if (!stream || std::filesystem::is_directory(file))
+    std::ifstream opened(file);
+    if (!opened || std::filesystem::is_directory(file))
         throw UserError(fmt::format("cannot read the mesh {}: give an existing .obj file", file.string()));
+    std::stringstream stream = joined(opened);
     check_numbers(stream, file);
     tinyobj::attrib_t attrib;
     std::vector<tinyobj::shape_t> shapes;

@@ -358,14 +358,16 @@ TEST_F(ReferenceTest, BadScenesNameWhatIsWrong) {
 
 // What the library that reads meshes would take for 0.
 TEST_F(ReferenceTest, NumbersOfAMeshThatAreNoneNameTheirLine) {
-    const std::string good = "v 0 0 0\n v +1 0 0 # a corner\nv 0 1e0 0 1 0.5 .25\nvt 0 1\nvn 0 0 1\nf 1 2 3\n";
-    EXPECT_EQ(read_mesh(write("good.obj", good), 1, dvec3(0)).triangles.size(), 1u);
+    // Lines may go on: those after them keep their numbers.
+    const std::string good =
+        "v 0 0 0\n v +1 0 0 # a corner \\\nv 0 1e0 0 1 0.5 .25\nvt 0 1\nvn 0 0 1\nf 1 2 3\nf 1 \\\r\n 2\\\n3\n";
+    EXPECT_EQ(read_mesh(write("good.obj", good), 1, dvec3(0)).triangles.size(), 2u);
     for (const std::string value : {"nan", "NaN", "inf", "-inf", "1e999", "1e13", "-", "1.5x", "x"}) {
         for (const char* line : {"v 0 @ 0", "v 0 0 0 1 @ 1", "vn 0 0 @", "vt @ 0", "\tv\t@ 0 0\r"}) {
             std::string text = line;
             text.replace(text.find('@'), 1, value);
             expect_user_error([&] { read_mesh(write("bad.obj", good + text + "\n"), 1, dvec3(0)); },
-                              {"bad.obj:7: v", "'" + value + "'"});
+                              {"bad.obj:10: v", "'" + value + "'"});
         }
         for (const std::string key : {"Kd", "Ke"}) {
             write("bad.mtl", "newmtl a\n" + key + " 0 " + value + " 0\n");
@@ -374,7 +376,7 @@ TEST_F(ReferenceTest, NumbersOfAMeshThatAreNoneNameTheirLine) {
         }
     }
     expect_user_error([&] { read_mesh(write("short.obj", good + "v 1 2\n"), 1, dvec3(0)); },
-                      {"short.obj:7: v needs 3 numbers and has 2"});
+                      {"short.obj:10: v needs 3 numbers and has 2"});
 }
 
 TEST_F(ReferenceTest, IndicesOfAMeshThatAreNoneNameTheirLine) {
