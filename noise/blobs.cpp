@@ -58,11 +58,12 @@ void require_all(const BlobsSpec& spec, std::string_view name) {
     require(key("rise"), spec.wind->rise, kWindRise);
 }
 
-/// Largest number of blobs alive; UserError if it is above kMostBlobs.
-double count(const BlobsSpec& spec, std::string_view name) {
-    auto most = static_cast<double>(spec.blobs.size());
+/// Largest number of blobs alive; UserError if it is above kMostBlobs with the earlier ones.
+double count(const BlobsSpec& spec, std::string_view name, double earlier) {
+    double most = earlier + static_cast<double>(spec.blobs.size());
     if (most > kMostBlobs)
-        throw UserError(fmt::format("{}.blob: {:.0f} blobs; allowed are {:.0f}", name, most, kMostBlobs));
+        throw UserError(fmt::format("{}.blob: {:.0f} blobs with those of earlier media; allowed are {:.0f}", name, most,
+                                    kMostBlobs));
     for (std::size_t m = 0; m < spec.sources.size(); ++m) {
         const BlobSourceSpec& s = spec.sources[m];
         if (s.rate == 0) continue;
@@ -73,7 +74,7 @@ double count(const BlobsSpec& spec, std::string_view name) {
                 "those before it; allowed are {:.0f}: lower rate or lifetime",
                 name, m, s.rate, s.lifetime, most, kMostBlobs));
     }
-    return most;
+    return most - earlier;
 }
 
 /// 0 to 1 without a kink.
@@ -108,9 +109,10 @@ BlobCloud::Range BlobCloud::Source::born(double after, double until) const {
     return {last_until(after) + 1, last_until(until)};
 }
 
-BlobCloud::BlobCloud(const BlobsSpec& spec, const IndexLaw& law, std::string_view name) : name_(name), law_(law) {
+BlobCloud::BlobCloud(const BlobsSpec& spec, const IndexLaw& law, std::string_view name, double earlier)
+    : name_(name), law_(law) {
     require_all(spec, name);
-    most_ = count(spec, name);
+    most_ = count(spec, name, earlier);
     explicit_.reserve(spec.blobs.size());
     for (const BlobSpec& blob : spec.blobs)
         explicit_.push_back({blob.center, blob.sigma, law.above_ambient(blob.temperature)});

@@ -63,8 +63,9 @@ struct BlobHome {
 class BlobCloud {
   public:
     /// name: of the medium, for messages, e.g. "medium.0". UserError, naming the key: a value that is not finite or out
-    /// of range, more than kMostBlobs alive (before anything is allocated).
-    BlobCloud(const BlobsSpec& spec, const IndexLaw& law, std::string_view name);
+    /// of range, more than kMostBlobs alive (before anything is allocated), those of the scene's earlier media, of
+    /// which there are so many, among them.
+    BlobCloud(const BlobsSpec& spec, const IndexLaw& law, std::string_view name, double earlier = 0);
 
     /// Explicit blobs, then the living ones of each source in order of birth; n without exaggeration. Blobs that have
     /// no index left (n = 0) are listed. FrameError beyond kLatestTime.

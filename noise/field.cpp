@@ -351,6 +351,7 @@ struct Field::State {
     std::optional<ScreenFrame> frame;
     std::uint64_t memory;  ///< left of what is allowed
     double interpolation_error = 0;
+    double blobs = 0;  ///< at a time, of the media so far
     std::vector<Medium> media;
     std::vector<std::string> notes;
 
@@ -412,7 +413,8 @@ struct Field::State {
     }
 
     std::string add(const BlobsSpec& spec, const IndexLaw& law, const std::string& name) {
-        BlobCloud cloud(spec, law, name);
+        BlobCloud cloud(spec, law, name, blobs);
+        blobs += cloud.most();
         if (!(cloud.most() > 0)) return "left out, it has no blobs";
         std::string note = fmt::format("up to {} blobs at a time", cloud.most());
         media.emplace_back(std::move(cloud));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "noise/blobs.h"
 #include "reference/direction.h"
 
 namespace eikonal::reference {
@@ -13,21 +14,6 @@ namespace {
 
 /// Beyond the quad's outline, in parts of its diagonal, light may be bent onto it.
 constexpr double kMargin = 0.05;
-/// Rms velocities of the wind that count, for a blob's whole life.
-constexpr double kGusts = 6;
-
-/// Greatest distance from a point to where blobs may be.
-double reach_of_blobs(const BlobsSpec& blobs, const dvec3& from) {
-    double reach = 0;
-    for (const BlobSpec& b : blobs.blobs) reach = std::max(reach, glm::distance(from, b.center) + kBlobReach * b.sigma);
-    for (const BlobSourceSpec& s : blobs.sources) {
-        const double sigma = std::sqrt(s.sigma * s.sigma + s.growth * s.lifetime);
-        const double drift = blobs.wind ? (glm::length(blobs.wind->rise) + kGusts * blobs.wind->rms) * s.lifetime : 0;
-        const double place = std::max(glm::distance(from, s.from), glm::distance(from, s.to));
-        reach = std::max(reach, place + drift + kBlobReach * sigma);
-    }
-    return reach;
-}
 
 /// Greatest distance from a point to what the scene is about.
 double reach_from(const Scene& scene, const dvec3& from) {
@@ -38,7 +24,10 @@ double reach_from(const Scene& scene, const dvec3& from) {
         if (o.shape == ObjectShape::Sphere) reach = std::max(reach, glm::distance(from, o.center) + o.radius);
     }
     for (const MediumSpec& medium : scene.media) {
-        if (const auto* blobs = std::get_if<BlobsSpec>(&medium)) reach = std::max(reach, reach_of_blobs(*blobs, from));
+        if (const auto* blobs = std::get_if<BlobsSpec>(&medium))
+            for (const BlobHome& home : BlobCloud(*blobs, index_law(scene.optics), "medium").homes())
+                reach = std::max(
+                    reach, glm::distance(from, home.largest.center) + home.radius + kBlobReach * home.largest.sigma);
         if (const auto* lens = std::get_if<ProfileSpec>(&medium); lens && lens->profile == ProfileKind::Luneburg)
             reach = std::max(reach, glm::distance(from, lens->center) + lens->radius);
     }

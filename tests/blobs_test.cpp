@@ -71,6 +71,13 @@ TEST(BlobCloud, ExplicitBlobsStayAsStated) {
     }
 }
 
+TEST(BlobCloud, AMillionAtATimeOverAllMedia) {
+    BlobsSpec spec;
+    spec.sources = {{.rate = 1000, .lifetime = 500}};
+    EXPECT_EQ(BlobCloud(spec, law(), "medium.1", 4e5).most(), 500001);
+    EXPECT_THROW(BlobCloud(spec, law(), "medium.1", 6e5), UserError);
+}
+
 TEST(BlobCloud, NothingToEmitIsEmpty) {
     BlobsSpec spec = plume();
     spec.sources[0].rate = 0;

@@ -133,7 +133,8 @@ void MediaLayers::add(std::size_t i, const TurbulenceSpec& spec) {
 }
 
 void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
-    BlobCloud cloud(spec, law_, fmt::format("medium.{}", i));
+    BlobCloud cloud(spec, law_, fmt::format("medium.{}", i), most_blobs_);
+    most_blobs_ += cloud.most();
     const std::vector<BlobHome> homes = cloud.homes();
     double strongest = 0;
     for (const BlobHome& home : homes) strongest = std::max(strongest, std::abs(home.largest.n));

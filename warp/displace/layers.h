@@ -132,6 +132,7 @@ class MediaLayers {
     const DisplacerSettings& settings_;
     const CameraPath& path_;
     bool camera_moves_;
+    double most_blobs_ = 0;  ///< at a time, of the media so far
     Camera reference_;
     double strength_;
     IndexLaw law_;

@@ -35,7 +35,8 @@ std::string shown(const toml::node& node) {
     } else {
         std::ostringstream out;
         node.visit([&out](const auto& concrete) { out << concrete; });
-        text = out.str();
+        // the shortest number that reads back the same, where toml++ prints 17 digits
+        text = node.is_floating_point() ? fmt::format("{}", *node.value_exact<double>()) : out.str();
     }
     return shortened(text);
 }
