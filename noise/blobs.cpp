@@ -43,7 +43,7 @@ void require_all(const BlobsSpec& spec, std::string_view name) {
         const BlobSourceSpec& s = spec.sources[m];
         const auto key = [&](const char* last) { return fmt::format("{}.source.{}.{}", name, m, last); };
         require(key("from"), s.from, kBlobPlace);
-        require(key("to"), s.to, kBlobPlace);
+        if (s.to) require(key("to"), *s.to, kBlobPlace);
         require(key("rate"), s.rate, kBlobRate);
         require(key("temperature"), s.temperature, kBlobTemperature);
         require(key("sigma"), s.sigma, kBlobSigma);
@@ -99,7 +99,8 @@ double BlobCloud::Source::birth_time(std::int64_t i) const {
 }
 
 dvec3 BlobCloud::Source::birth_place(std::int64_t i) const {
-    return spec.from + (spec.to - spec.from) * stream.uniform(2 * static_cast<std::uint64_t>(i) + 1);
+    if (!spec.to) return spec.from;
+    return spec.from + (*spec.to - spec.from) * stream.uniform(2 * static_cast<std::uint64_t>(i) + 1);
 }
 
 BlobCloud::Range BlobCloud::Source::born(double after, double until) const {
@@ -138,7 +139,7 @@ std::vector<BlobHome> BlobCloud::homes() const {
     for (const Source& source : sources_) {
         const BlobSourceSpec& s = source.spec;
         const double sigma = std::sqrt(s.sigma * s.sigma + s.growth * s.lifetime);
-        const dvec3 along = 0.5 * (s.to - s.from), risen = 0.5 * s.lifetime * rise_;
+        const dvec3 along = 0.5 * (s.to.value_or(s.from) - s.from), risen = 0.5 * s.lifetime * rise_;
         const double blown = wind_ ? kFastestEddy * wind_->rms() * s.lifetime : 0;
         homes.push_back({{s.from + along + risen, sigma, law_.above_ambient(s.temperature)},
                          glm::length(along) + glm::length(risen) + blown,

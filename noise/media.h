@@ -77,9 +77,10 @@ struct BlobSpec {
     double temperature = 1000;  ///< [K] > 0
 };
 
-/// Emits blobs along the segment from..to.
+/// Emits blobs at `from`, or along the segment from..to.
 struct BlobSourceSpec {
-    dvec3 from{0, 0, 0}, to{0, 0, 0};
+    dvec3 from{0, 0, 0};
+    std::optional<dvec3> to{};  ///< left out: a point source
     double rate = 10;           ///< blobs a second >= 0
     double temperature = 1000;  ///< at birth [K] > 0
     double sigma = 0.1;         ///< [m] > 0

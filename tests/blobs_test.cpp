@@ -199,7 +199,7 @@ TEST(BlobCloud, WindCarriesBlobsAlongTheExactPath) {
     BlobsSpec spec = plume();
     spec.wind->seed = 9;
     spec.sources[0].lifetime = 1;  // half of L0/rms = 2 s
-    spec.sources[0].to = spec.sources[0].from;
+    spec.sources[0].to.reset();
     spec.sources[0].rate = 30;
     const BlobSourceSpec& source = spec.sources[0];
     const BlobCloud cloud(spec, law(), "medium.0");
@@ -231,7 +231,7 @@ TEST(BlobCloud, RiseAloneIsExact) {
     BlobsSpec spec = plume();
     spec.wind->rms = 5e-324;
     spec.wind->rise = {0.5, 2, 0};
-    spec.sources[0].to = spec.sources[0].from;
+    spec.sources[0].to.reset();
     const BlobSourceSpec& source = spec.sources[0];
     for (const Blob& blob : BlobCloud(spec, law(), "medium.0").at(1e6)) {
         const double age = (blob.sigma * blob.sigma - source.sigma * source.sigma) / source.growth;
@@ -299,7 +299,7 @@ TEST(BlobCloud, RefusesWhatItCannotHold) {
     expect("medium.3.source.1.lifetime", [](BlobsSpec& s) { s.sources[1].lifetime = 0; });
     expect("medium.3.source.0.sigma", [&](BlobsSpec& s) { s.sources[0].sigma = nan; });
     expect("medium.3.source.0.temperature", [](BlobsSpec& s) { s.sources[0].temperature = -3; });
-    expect("medium.3.source.0.to", [](BlobsSpec& s) { s.sources[0].to.z = kInfinity; });
+    expect("medium.3.source.0.to", [](BlobsSpec& s) { s.sources[0].to = dvec3(0, 0, kInfinity); });
     expect("medium.3.source.0.growth", [](BlobsSpec& s) { s.sources[0].growth = -1e-9; });
     expect("medium.3.source.0.cooling", [](BlobsSpec& s) { s.sources[0].cooling = kInfinity; });
     expect("medium.3.wind.rms", [](BlobsSpec& s) { s.wind->rms = 1e300; });

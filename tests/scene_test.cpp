@@ -157,7 +157,7 @@ TEST(Scene, SurfaceBlobsProfile) {
     EXPECT_EQ(blobs.blobs[0].temperature, 900);
     EXPECT_EQ(blobs.blobs[1].sigma, BlobSpec{}.sigma);
     ASSERT_EQ(blobs.sources.size(), 1u);
-    EXPECT_EQ(blobs.sources[0].to, dvec3(1, 0, 0));
+    EXPECT_EQ(blobs.sources[0].to, std::optional(dvec3(1, 0, 0)));
     EXPECT_EQ(blobs.sources[0].lifetime, 4);
     EXPECT_EQ(blobs.wind->rms, 0.7);
     EXPECT_EQ(blobs.wind->rise, dvec3(0, 2, 0));

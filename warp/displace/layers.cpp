@@ -29,8 +29,9 @@ constexpr double kLeastAlignment = 0.866;
 constexpr double kDeeper = 10;
 /// A Gaussian field's largest value over a shot, in parts of its rms.
 constexpr double kLargestOverRms = 6;
-/// Instants over which the expected rms of blobs is taken.
-constexpr int kRmsInstants = 2;
+/// Blobs that the expected rms is taken over, and instants that have so many between them. Wind is dear.
+constexpr double kRmsBlobs = 600;
+constexpr int kFewestRmsInstants = 2, kMostRmsInstants = 64, kMostRmsWinds = 16;
 
 /// Steps of a first-order ray beyond which it is warned that frames take long.
 constexpr double kManySteps = 2000;
@@ -437,22 +438,36 @@ struct PixelPair {
 
 }  // namespace
 
-/// Over rays at random and their neighbours one pixel to the right or below, by turns; of blobs, which are dear to
-/// place, at a few instants only, the first of them t = 0: a shot begins there, and finds its wind made.
+int MediaLayers::rms_instants(const MediumLayer& layer, int rays) const {
+    const auto* cloud = std::get_if<BlobCloud>(&layer.field);
+    if (cloud == nullptr) return rays;
+    const auto& spec = std::get<BlobsSpec>(scene_.media[layer.medium]);
+    if (spec.sources.empty()) return 1;
+    const int most = spec.wind && spec.wind->rms > 0 ? kMostRmsWinds : kMostRmsInstants;
+    return static_cast<int>(std::clamp<double>(std::ceil(kRmsBlobs / cloud->most()), kFewestRmsInstants, most));
+}
+
+/// Over rays spread over the picture and their neighbours one pixel to the right or below, by turns, and over instants,
+/// the first of them t = 0: a shot begins there, and finds its wind made.
 MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& layer, double D) const {
     const RandomStream stream(1, "expected rms");
-    const auto draw = [&](int i, int c) { return stream.uniform(static_cast<std::uint64_t>(4 * i + c)); };
     const bool blobs = std::holds_alternative<BlobCloud>(layer.field);
     const double steps = blobs ? 1 : D * glm::length(reference_.forward / layer.cell);
     const int rays = std::clamp(static_cast<int>(std::min(kRmsSteps / steps, 1e6)), kFewestRmsRays, kRmsRays);
+    const int instants = rms_instants(layer, rays);
     std::optional<LayerInstant> instant;
     SampledVariance sum;
     for (int i = 0; i < rays; ++i) {
         check_cancelled(settings_.cancelled);
-        const int x = static_cast<int>(draw(i, 0) * settings_.width),
-                  y = static_cast<int>(draw(i, 1) * settings_.height);
-        if (!blobs || i % (rays / kRmsInstants) == 0)
-            instant = this->instant(layer, reference_, i == 0 ? 0 : 1e3 * draw(i, 2), D, D, 1);
+        // points of the plane that keep apart, however many there are
+        const auto along = [i](double step, int size) {
+            const double place = step * (i + 1);
+            return static_cast<int>((place - std::floor(place)) * size);
+        };
+        const int x = along(0.7548776662466927, settings_.width), y = along(0.5698402909980532, settings_.height);
+        if (const int k = i * instants / rays; i == 0 || k != (i - 1) * instants / rays)
+            instant = this->instant(layer, reference_, k == 0 ? 0 : 1e3 * stream.uniform(static_cast<std::uint64_t>(k)),
+                                    D, D, 1);
         const PixelPair pair(x, y, i % 2 == 0);
         std::vector<Band> bands;
         if (blobs) {

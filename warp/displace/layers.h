@@ -122,6 +122,8 @@ class MediaLayers {
         double slope = 0;  ///< of ∂d_x/∂x and ∂d_y/∂y, pixel to pixel
     };
     SampledVariance sampled_variance(const MediumLayer& layer, double D) const;
+    /// That it is taken over: of blobs, which are dear to place, the fewer the more there are.
+    int rms_instants(const MediumLayer& layer, int rays) const;
 
     /// Variance of the slopes where blobs are, at t = 0: within 1.5 σ of the middle of one taken at random.
     double blob_focusing(const MediumLayer& layer, double D) const;

@@ -115,6 +115,25 @@ struct SkimmingRay : Ray {
         }
         return {static_cast<float>(whole(d.x + 0.5f)), static_cast<float>(whole(d.y + 0.5f))};
     }
+    /// d, or where the ray passes over the ground for good but the picture's samples there mix in some, at the horizon
+    /// or the foot of what it sees: the nearest point along its way over the screen, either way, that is clear of it.
+    Shift above_ground(Shift d) const {
+        const float length = std::sqrt(d.x * d.x + d.y * d.y);
+        if (ends_on_ground || !(length > 0)) return d;
+        const auto mixes_ground = [&](Shift there) {
+            const int xi = x + whole(there.x), yi = y + whole(there.y);
+            for (int j = yi; j <= yi + 1; ++j)
+                for (int i = xi; i <= xi + 1; ++i)
+                    if (ground.is(i, j, depth.at(i, j))) return true;
+            return false;
+        };
+        if (!mixes_ground(d)) return d;
+        for (float way = kAboveGround / 8; way <= kAboveGround; way += kAboveGround / 8)
+            for (const float side : {way, -way})
+                if (const Shift there{d.x + side / length * d.x, d.y + side / length * d.y}; !mixes_ground(there))
+                    return there;
+        return d;
+    }
     /// The last point d before the ray passes behind an object at `blocked`, moved back from the object's outline until
     /// no sample of a cubic filter there, antialiased ones beside the outline included, holds any of it.
     Shift stood_back(Shift d, Shift blocked, Shift before) const {
@@ -420,7 +439,7 @@ Shift MeetTile::over_ground(BandRows& bands, int x, int y, const DepthPlane::Ran
         {bands, depth_, x, y, range.front}, ground_, std::min<double>(end, range.farthest), end <= range.farthest};
     switch (how_) {
         case DepthMeeting::March:
-            return skim(ray, range.nearest);
+            return ray.above_ground(skim(ray, range.nearest));
         case DepthMeeting::FixedPoint:
             return fixed_point(ray, kFixedPointSteps);
         case DepthMeeting::Own:

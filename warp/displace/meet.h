@@ -23,6 +23,7 @@
 /// Such a ray may pass behind an object, where the plate does not show it, and comes out again or ends on ground that
 /// is hidden: the ground beside it that is as deep stands in, as far as kFarthestAside. Where there is none, it is the
 /// last visible point before the object's outline, and stands back from its antialiased rim, by kFarthestBack at most.
+/// One that passes over the ground for good stands clear of the horizon, whose pixels mix in some, by kAboveGround at most.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +41,7 @@ inline constexpr int kFixedPointSteps = 8;
 /// [px]
 inline constexpr float kMarchStep = 0.5f, kMarchError = 0.001f;
 /// [px]
-inline constexpr float kFarthestBack = 4;
+inline constexpr float kFarthestBack = 4, kAboveGround = 2;
 inline constexpr int kFarthestAside = 256;
 /// A path that needs more steps than this, beyond any plausible warp, ends where they do.
 inline constexpr int kMostMarchSteps = 1024;

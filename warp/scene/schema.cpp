@@ -230,8 +230,8 @@ static Keys keys(BlobSpec& b) {
 
 static Keys keys(BlobSourceSpec& s) {
     return {
-        {"from", "one end of the source [m]", s.from},
-        {"to", "its other end [m]", s.to},
+        {"from", "the source, or one end of it [m]", s.from},
+        {"to", "its other end, of a line [m]", s.to},
         {"rate", "blobs a second", s.rate, {within(kBlobRate)}},
         {"temperature", "at birth [K]", s.temperature, {within(kBlobTemperature)}},
         {"sigma", "radius [m]", s.sigma, {within(kBlobSigma)}},
