@@ -14,6 +14,7 @@
 #include "warp/image/depth_map.h"
 #include "warp/image/interrupt.h"
 #include "warp/resample/resample.h"
+#include "warp/scene/background.h"
 #include "warp/scene/message.h"
 
 namespace eikonal::reference {
@@ -45,7 +46,7 @@ DisplacerSettings displacer_settings(const Scene& scene, std::optional<Model> mo
     settings.width = width;
     settings.height = height;
     settings.fps = scene.time.fps.value_or(kDefaultFps);
-    settings.far = scene.plate.far.value_or(kDefaultFar);
+    settings.far = scene.plate.far.value_or(default_far(scene));
     settings.deepest = kInfiniteDepth;
     settings.model = model;
     settings.sample_errors = true;
@@ -54,9 +55,10 @@ DisplacerSettings displacer_settings(const Scene& scene, std::optional<Model> mo
 }
 
 /// Depth as the warp takes it from the plate's channel Z.
-DepthPlane depth_plane(const RenderedFrame& plate, const PixelWindow& window, double far) {
+DepthPlane depth_plane(const RenderedFrame& plate, const PixelWindow& window, double far, bool mirage) {
     std::vector<float> metres = plate.depth;
     for (float& z : metres) z = z < kInfiniteDepth ? std::max(z, kNearestDepth) : static_cast<float>(far);
+    if (mirage) put_background_behind(metres, far);
     return {window, std::move(metres)};
 }
 
@@ -301,7 +303,7 @@ const Comparer::Frame& Comparer::add(int number, const std::function<void()>& ti
 
     const PixelWindow window{0, 0, frame.plate.width, frame.plate.height};
     const std::vector<std::uint8_t> edges = near_silhouettes(frame.plate, frame.truth, s.scene.camera.projection);
-    const DepthPlane depth = depth_plane(frame.plate, window, s.far);
+    const DepthPlane depth = depth_plane(frame.plate, window, s.far, has_mirage(s.scene));
     const Frame* before = s.frames.empty() ? nullptr : &s.frames.back();
     frame.models.resize(s.contenders.size());
     for (std::size_t m = 0; m < s.contenders.size(); ++m) {

@@ -5,6 +5,7 @@
 
 #include "noise/memory.h"
 #include "warp/image/depth_map.h"
+#include "warp/scene/background.h"
 #include "warp/scene/screen_view.h"
 
 namespace eikonal::reference {
@@ -13,15 +14,15 @@ namespace {
 /// Length of path after which a ray has met nothing [m], if the scene states no farther.
 constexpr double kFarthestSight = 1e6;
 
-double far_of(const PlateSpec& plate) {
-    return plate.far.value_or(plate.distance.value_or(kDefaultFar));
+double far_of(const Scene& scene) {
+    return scene.plate.far.value_or(scene.plate.distance.value_or(default_far(scene)));
 }
 
 Field make_field(const Scene& scene, const CameraPath& path, int width, int height) {
     const Camera camera = path.reference();
-    const ScreenFrame frame{camera.position, camera.right, camera.up, camera.forward,
-                            screen_view(camera, width, height, scene.optics.aperture, far_of(scene.plate),
-                                        scene.time.fps.value_or(kDefaultFps))};
+    const ScreenFrame frame{
+        camera.position, camera.right, camera.up, camera.forward,
+        screen_view(camera, width, height, scene.optics.aperture, far_of(scene), scene.time.fps.value_or(kDefaultFps))};
     return Field(scene.media, scene.optics, frame, memory_limit());
 }
 
@@ -32,7 +33,7 @@ SceneAir::SceneAir(const Scene& scene, const RaySettings& settings)
       settings_(settings),
       width_(scene.camera.resolution.value_or(kDefaultResolution)[0]),
       height_(scene.camera.resolution.value_or(kDefaultResolution)[1]),
-      far_(far_of(scene.plate)),
+      far_(far_of(scene)),
       path_(scene.camera, width_, height_),
       field_(make_field(scene, path_, width_, height_)) {
     if (scene.media.size() == 1)

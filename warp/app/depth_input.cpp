@@ -1,4 +1,5 @@
 #include "warp/app/depth_input.h"
+#include "warp/scene/background.h"
 
 #include <fmt/format.h>
 
@@ -45,7 +46,10 @@ void refuse_movie(std::string_view option, const std::filesystem::path& file, st
             option, file.string(), file.filename().string(), name));
 }
 
-DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
+DepthInput::DepthInput(const DepthArguments& a, const Scene& scene) {
+    const PlateSpec& plate = scene.plate;
+    const double unstated = default_far(scene);
+    mirage_ = has_mirage(scene);
     options_.type = a.type.value_or(DepthType::Z);
     options_.range = a.range;
     if (a.depth) {
@@ -78,18 +82,19 @@ DepthInput::DepthInput(const DepthArguments& a, const PlateSpec& plate) {
     } else if (plate.ground) {
         ground_ = Ground{(*plate.ground)[0], (*plate.ground)[1], true};
     } else {
-        constant_ = plate.distance.value_or(plate.far.value_or(kDefaultFar));
+        constant_ = plate.distance.value_or(plate.far.value_or(unstated));
     }
     const std::optional<double> range_far =
         a.range ? std::optional(std::max((*a.range)[0], (*a.range)[1])) : std::nullopt;
     limited_ = a.far || range_far || !a.depth;
     far_in_scene_ = plate.far.has_value();
+    far_unstated_ = !(a.far || range_far || a.distance || plate.far || plate.distance);
     if (a.far)
         far_ = *a.far;
     else if (constant_)
         far_ = *constant_;
     else
-        far_ = range_far.value_or(plate.far.value_or(kDefaultFar));
+        far_ = range_far.value_or(plate.far.value_or(unstated));
     if (constant_ && *constant_ > far_)
         throw UserError(
             fmt::format("--far {:g} is nearer than the distance {:g}; give a larger --far or a smaller --distance",
@@ -168,6 +173,7 @@ DepthPlane DepthInput::plane(int frame, const Picture* input, const std::filesys
             }
             z = std::max(std::min(z, deepest), std::min(kNearestDepth, deepest));
         }
+    if (mirage_) put_background_behind(buffer.metres, far_);
     return {seen_from(data, display), std::move(buffer.metres)};
 }
 

@@ -10,6 +10,7 @@
 
 #include "warp/app/options.h"
 #include "warp/image/sequence.h"
+#include "warp/scene/background.h"
 #include "warp/scene/camera.h"
 #include "warp/scene/scene.h"
 
@@ -31,13 +32,16 @@ PixelWindow seen_from(const PixelWindow& data, const PixelWindow& display);
 class DepthInput {
   public:
     /// Decides the source. UserError: ill-formed values, nothing that tells a distance, options without effect.
-    DepthInput(const DepthArguments& arguments, const PlateSpec& plate);
+    DepthInput(const DepthArguments& arguments, const Scene& scene);
 
-    /// Distance of the background [m]: --far, else the map's range, the constant distance, the scene's, or kDefaultFar.
+    /// Distance of the background [m]: --far, else the map's range, the constant distance, the scene's, or
+    /// default_far().
     double far() const { return far_; }
     /// What no depth is beyond [m]: far(), or kInfiniteDepth where a map in metres, or in 1/metres, tells the depth and
     /// no --far limits it.
     double deepest() const { return limited_ ? far_ : std::max<double>(far_, kInfiniteDepth); }
+    /// Whether far() is a default.
+    bool far_is_unstated() const { return far_unstated_; }
     /// Where far() comes from, for messages.
     std::string_view far_name() const { return far_in_scene_ ? "the scene's plate.far =" : "the default --far"; }
     /// Whether one distance holds for all pixels.
@@ -66,7 +70,8 @@ class DepthInput {
 
     DepthOptions options_;
     double far_;
-    bool limited_, far_in_scene_;
+    bool limited_, far_in_scene_, far_unstated_;
+    bool mirage_;  ///< the background stays behind all else
     std::optional<double> constant_;
     std::optional<FilePattern> files_;
     std::optional<Ground> ground_;

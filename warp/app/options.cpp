@@ -1,4 +1,5 @@
 #include "warp/app/options.h"
+#include "warp/scene/background.h"
 
 #include <fmt/format.h>
 
@@ -192,9 +193,12 @@ void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
     app.add_option("--ground", o.ground,
                    "flat ground: camera height [m] and the horizon's row from the top, in pixels or as 55%")
         ->type_name("HEIGHT,HORIZON");
-    add_number(app, "--far", o.far, "M",
-               fmt::format("distance of the background (default: the scene's, else {:g}); limits depth", kDefaultFar), kLengths,
-               is_length);
+    add_number(
+        app, "--far", o.far, "M",
+        fmt::format(
+            "distance of the background (default: the scene's, else {:g}, or {:g} over surfaces alone); limits depth",
+            kDefaultFar, kDefaultSky),
+        kLengths, is_length);
     add_choice(app, "--depth-meeting", o.meeting, kMeetings,
                "how a bent ray meets the depth map: followed to the first surface (default), iterated, or the pixel's "
                "own depth");

@@ -153,7 +153,7 @@ Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, d
     const std::array<int, 2> resolution = scene.camera.resolution.value_or(kDefaultResolution);
     const Camera camera = CameraPath(scene.camera, resolution[0], resolution[1]).reference();
     const ScreenView view = screen_view(camera, resolution[0], resolution[1], scene.optics.aperture,
-                                        DepthInput({}, scene.plate).far(), scene.time.fps.value_or(kDefaultFps));
+                                        DepthInput({}, scene).far(), scene.time.fps.value_or(kDefaultFps));
     const std::vector<ScreenGeometry> geometry = layout_screens(spec, view);
     check_screens(spec, geometry, memory_limit());
     auto screens =

@@ -74,7 +74,7 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
            const PixelWindow& display, double pixel_aspect, std::optional<double> fps,
            const std::function<PixelWindow()>& overscan, bool state_errors)
     : scene_(std::move(scene)),
-      depth_(depth, scene_.plate),
+      depth_(depth, scene_),
       strength_(strength),
       meeting_(depth.meeting.value_or(DepthMeeting::March)),
       display_(display),
@@ -132,6 +132,11 @@ void Shot::tell(const std::vector<int>& frames, bool verbose) {
     if (scene_.media.empty()) warnings_.push_back("the scene has no medium: nothing moves");
     if (gain_ != 0)
         for (std::string& line : flat_lattices(scene_)) warnings_.push_back(std::move(line));
+    if (displacer_->mirages() && depth_.far_is_unstated() && depth_.far() < kDefaultSky)
+        warnings_.push_back(fmt::format(
+            "the background, which a mirage mirrors, is taken to be only {:g} m away, for the other media's sake: "
+            "say with --far or plate.far how far it is",
+            depth_.far()));
     if (choice_ && choice_->p95 > *tolerance_)
         warnings_.push_back(
             choice_->exact

@@ -115,20 +115,22 @@ struct SkimmingRay : Ray {
         }
         return {static_cast<float>(whole(d.x + 0.5f)), static_cast<float>(whole(d.y + 0.5f))};
     }
-    /// d, or where the ray passes over the ground for good but the picture's samples there mix in some, at the horizon
-    /// or the foot of what it sees: the nearest point along its way over the screen, either way, that is clear of it.
+    /// d, or where the ray passes over the ground for good but the picture's samples there mix in some that is much
+    /// nearer than what it sees, as at the horizon: the nearest point along its way over the screen, to either side,
+    /// that is clear of it.
     Shift above_ground(Shift d) const {
         const float length = std::sqrt(d.x * d.x + d.y * d.y);
         if (ends_on_ground || !(length > 0)) return d;
+        const float limit = kEdgeRatio * under(d).seen;
         const auto mixes_ground = [&](Shift there) {
             const int xi = x + whole(there.x), yi = y + whole(there.y);
-            for (int j = yi; j <= yi + 1; ++j)
-                for (int i = xi; i <= xi + 1; ++i)
-                    if (ground.is(i, j, depth.at(i, j))) return true;
+            for (int j = yi - 1; j <= yi + 2; ++j)
+                for (int i = xi - 1; i <= xi + 2; ++i)
+                    if (const float near = depth.at(i, j); near < limit && ground.is(i, j, near)) return true;
             return false;
         };
         if (!mixes_ground(d)) return d;
-        for (float way = kAboveGround / 8; way <= kAboveGround; way += kAboveGround / 8)
+        for (float way = 0.25f; way <= kAboveGround; way += 0.25f)
             for (const float side : {way, -way})
                 if (const Shift there{d.x + side / length * d.x, d.y + side / length * d.y}; !mixes_ground(there))
                     return there;

@@ -41,7 +41,7 @@ inline constexpr int kFixedPointSteps = 8;
 /// [px]
 inline constexpr float kMarchStep = 0.5f, kMarchError = 0.001f;
 /// [px]
-inline constexpr float kFarthestBack = 4, kAboveGround = 2;
+inline constexpr float kFarthestBack = 4, kAboveGround = 3;
 inline constexpr int kFarthestAside = 256;
 /// A path that needs more steps than this, beyond any plausible warp, ends where they do.
 inline constexpr int kMostMarchSteps = 1024;
