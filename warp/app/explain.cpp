@@ -19,46 +19,47 @@ double seconds_since(Clock::time_point start) {
 
 struct Probe {
     double instant = 0, map = 0, resample = 0;  ///< [s] of a whole picture's
+    MapStatistics size;
     std::optional<StatedError> error;
 };
 
-/// Distances from far/8 to far, even in their inverse.
-DepthPlane ramp(const PixelWindow& window, double far) {
-    std::vector<float> metres(window.area());
-    for (std::size_t i = 0; i < metres.size(); ++i) {
-        const double part = static_cast<double>(i % static_cast<std::size_t>(window.width)) / window.width;
-        metres[i] = static_cast<float>(far / (8 - 7 * part));
-    }
-    return {window, std::move(metres)};
-}
-
 Probe measure(const Shot& shot, const ExplainedRun& run, int frame) {
-    const int rows = std::min(kExplainRows, run.display.height);
-    const int middle = run.display.height / 2 / kExplainRows * kExplainRows;
-    const PixelWindow strip{0, std::min(middle, run.display.height - rows), run.display.width, rows};
-    const double whole = static_cast<double>(run.display.height) / rows;
+    const PixelWindow picture{0, 0, run.display.width, run.display.height};
     std::optional<DepthPlane> plane;
     DepthSource depth = shot.depth().constant().value_or(0);
-    if (!shot.depth().constant()) depth = &plane.emplace(ramp(strip, shot.depth().far()));
+    double nearest = std::get<double>(depth), farthest = nearest;
+    if (!shot.depth().constant()) {
+        std::optional<Picture> input;
+        if (shot.depth().inside_input() && !run.picture.empty()) input = read_picture(run.picture);
+        std::vector<Remark> remarks;
+        plane.emplace(shot.depth().plane(frame, input ? &*input : nullptr, run.picture, run.display, run.display,
+                                         shot.displacer().camera(frame), remarks));
+        depth = &*plane;
+        nearest = plane->nearest();
+        farthest = plane->farthest();
+    }
 
     Probe probe;
-    std::vector<float> uv(2 * strip.area());
+    DisplacementMap map{picture, std::vector<float>(2 * picture.area())};
     auto start = Clock::now();
-    const Displacer::Instant instant =
-        shot.displacer().at(frame, plane ? plane->nearest() : std::get<double>(depth),
-                            plane ? plane->farthest() : std::get<double>(depth), shot.gain());
+    const Displacer::Instant instant = shot.displacer().at(frame, nearest, farthest, shot.gain());
     probe.instant = seconds_since(start);
     start = Clock::now();
-    instant.map(strip, depth, shot.meeting(), uv.data());
-    probe.map = whole * seconds_since(start);
-    probe.error = instant.stated_error(strip, depth, shot.meeting(), uv.data());
+    instant.map(picture, depth, shot.meeting(), map.uv.data());
+    probe.map = seconds_since(start);
+    probe.size = statistics(map);
+    probe.error = instant.stated_error(picture, depth, shot.meeting(), map.uv.data());
     if (run.resample) {
+        const int rows = std::min(kExplainRows, picture.height);
+        const PixelWindow strip{0, (picture.height - rows) / 2, picture.width, rows};
         const std::vector<float> plate(4 * strip.area(), 0.5F);
         std::vector<float> out(plate.size());
+        const float* uv =
+            map.uv.data() + 2 * static_cast<std::size_t>(strip.y0) * static_cast<std::size_t>(strip.width);
         start = Clock::now();
-        resample({plate.data(), strip, 4, 4 * strip.width}, {uv.data(), strip, 2 * strip.width},
+        resample({plate.data(), strip, 4, 4 * strip.width}, {uv, strip, 2 * strip.width},
                  {out.data(), strip, 4, 4 * strip.width}, {*run.resample});
-        probe.resample = whole * seconds_since(start);
+        probe.resample = static_cast<double>(picture.height) / rows * seconds_since(start);
     }
     return probe;
 }
@@ -66,7 +67,7 @@ Probe measure(const Shot& shot, const ExplainedRun& run, int frame) {
 }  // namespace
 
 void explain(const Shot& shot, const ExplainedRun& run) {
-    const int first = run.frames.empty() ? shot.scene().time.first_frame : run.frames.front();
+    const int first = run.first;
     const Camera camera = shot.displacer().camera(first);
     fmt::print("picture: {} x {} pixels, {} px {}; {}\n", run.display.width, run.display.height,
                fmt::format("{:.5g}", camera.f_px),
@@ -81,6 +82,7 @@ void explain(const Shot& shot, const ExplainedRun& run) {
         return;
     }
     const Probe probe = measure(shot, run, first);
+    fmt::print("frame {}: {:.3g} px rms, {:.3g} px at most\n", first, probe.size.rms, probe.size.largest);
     fmt::print(
         "error: 95 of 100 of {} sampled pixels of frame {} are off by {:.2g} px at most, half of them by {:.2g} px\n",
         probe.error->samples, first, probe.error->p95, probe.error->p50);

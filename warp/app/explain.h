@@ -1,24 +1,27 @@
 /// --explain: what a shot needs, before anything is made. Nothing is written.
 ///
-/// Displacement and focusing are expectations of the scene; error, time and memory are of a probe: the middle tile row
-/// of the first frame's map, kExplainRows pixels high, for objects at the shot's distance or, where depth varies, at
-/// distances from far/8 to far across the picture. The times are this machine's, now; reading and writing files come on
-/// top.
+/// Displacement and focusing before any falloff are expectations of the scene. Displacement, error and time of a frame
+/// are those of the first one's map, which is made with the depth and for the pixels that it will have, but without
+/// mask and shutter; the picture's time is of its middle rows. The times are this machine's, now; reading and writing
+/// files come on top.
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <vector>
 
 #include "warp/app/shot.h"
 
 namespace eikonal {
 
-inline constexpr int kExplainRows = 64;
+inline constexpr int kExplainRows = 64;  ///< of the picture, resampled
 
 /// What the explained command would do with the maps.
 struct ExplainedRun {
     PixelWindow display;
-    std::vector<int> frames;  ///< not yet finished; empty: as many as a movie has
+    std::vector<int> frames;        ///< not yet finished; empty: as many as a movie has
+    int first = 1;                  ///< of all frames, finished or not: the one that is tried
+    std::filesystem::path picture;  ///< its file, whose channel depth may be; empty: none
     std::size_t kept = 0;
     int threads = 1;
     double frame_bytes = 0;          ///< as run_pipeline's
@@ -26,7 +29,7 @@ struct ExplainedRun {
     int instants = 1;                ///< maps a frame: shutter samples
 };
 
-/// Prints it on stdout.
+/// Prints it on stdout. FrameError if the first frame's depth cannot be read.
 void explain(const Shot& shot, const ExplainedRun& run);
 
 }  // namespace eikonal

@@ -45,9 +45,10 @@ int run(const MapOptions& options) {
               options.run.states_errors());
     outputs.check(frames, shot.companions());
     shot.tell(frames, options.run.verbose);
+    const int first = frames.front();
     const std::size_t kept = options.run.overwrite ? 0 : outputs.keep_finished(frames, display);
     if (options.run.explain) {
-        explain(shot, {display, frames, kept, limit.threads(), shot.frame_bytes(kMapBytes), {}});
+        explain(shot, {display, frames, first, {}, kept, limit.threads(), shot.frame_bytes(kMapBytes), {}});
         return 0;
     }
     if (!options.run.skip_bad_frames)

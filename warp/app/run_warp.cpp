@@ -309,6 +309,7 @@ int run(const WarpOptions& options) {
     outputs.check(frames, inputs);
     shot.tell(frames, options.run.verbose);
 
+    const int first = frames.empty() ? shot.scene().time.first_frame : frames.front();
     std::size_t kept = 0;
     if (!options.run.overwrite) {
         if (to_movie) {
@@ -319,8 +320,9 @@ int run(const WarpOptions& options) {
         }
     }
     if (options.run.explain) {
-        explain(shot, {footage.display, frames, kept, limit.threads(), bytes_of_frame(options, footage, shot),
-                       options.filter, options.samples});
+        const bool pictures = footage.kind != FootageKind::Movie;
+        explain(shot, {footage.display, frames, first, pictures ? footage.files.at(first) : std::filesystem::path(),
+                       kept, limit.threads(), bytes_of_frame(options, footage, shot), options.filter, options.samples});
         return 0;
     }
     if (!options.run.skip_bad_frames)
