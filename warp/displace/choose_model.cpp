@@ -2,9 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+#include <variant>
 
 #include "noise/error.h"
+#include "warp/displace/ray_frame.h"
 #include "warp/displace/stated_error.h"
+#include "warp/image/depth_map.h"
+#include "warp/scene/background.h"
 
 namespace eikonal {
 namespace {
@@ -15,20 +21,46 @@ std::vector<double> choice_frames(const Scene& scene, const DisplacerSettings& s
     return {first, 0.5 * (first + last), last};
 }
 
+/// What a camera sees at a distance over the scene's heated surfaces: these themselves where they are nearer.
+DepthPlane ground_before(const Camera& camera, const Scene& scene, const PixelWindow& window, double distance) {
+    std::vector<float> metres(window.area(), static_cast<float>(distance));
+    for (const MediumSpec& medium : scene.media) {
+        const auto* surface = std::get_if<SurfaceSpec>(&medium);
+        if (surface == nullptr) continue;
+        const dvec3 normal = glm::normalize(surface->normal);
+        auto z = metres.begin();
+        for (int y = window.y0; y < window.y0 + window.height; ++y)
+            for (int x = window.x0; x < window.x0 + window.width; ++x, ++z) {
+                const StraightRay ray = straight_ray(camera, x + 0.5, y + 0.5);
+                const double way = -glm::dot(ray.origin - surface->origin, normal) / glm::dot(ray.direction, normal);
+                if (way > kNearestDepth && way < double{*z}) *z = static_cast<float>(way);
+            }
+    }
+    return {window, std::move(metres)};
+}
+
 /// The largest p95 of the frames and distances.
 double sampled_p95(const Displacer& displacer, const Scene& scene, const DisplacerSettings& settings,
-                   const std::vector<double>& distances, double gain) {
+                   const std::vector<double>& distances, bool over_ground, double gain) {
     double worst = 0;
     std::vector<float> uv(2 * static_cast<std::size_t>(settings.width));
     for (const double frame : choice_frames(scene, settings)) {
-        const Displacer::Instant instant = displacer.at(frame, distances.front(), distances.back(), gain);
         for (const double distance : distances) {
+            std::optional<DepthPlane> plane;
+            DepthSource depth = distance;
+            if (over_ground) {
+                const PixelWindow picture{0, 0, settings.width, settings.height};
+                depth = &plane.emplace(ground_before(displacer.camera(frame), scene, picture, distance));
+            }
+            const Displacer::Instant instant =
+                displacer.at(frame, plane ? double{plane->nearest()} : distances.front(), distances.back(), gain);
+            const DepthMeeting meeting = plane ? DepthMeeting::March : DepthMeeting::Own;
             std::vector<double> errors;
             for (int r = 0; r < kChoiceRows; ++r) {
                 const PixelWindow row{0, (2 * r + 1) * settings.height / (2 * kChoiceRows), settings.width, 1};
-                instant.map(row, distance, DepthMeeting::Own, uv.data());
+                instant.map(row, depth, meeting, uv.data());
                 const std::vector<double> some =
-                    instant.sampled_errors(row, distance, DepthMeeting::Own, uv.data(), kChoiceSamples / kChoiceRows);
+                    instant.sampled_errors(row, depth, meeting, uv.data(), kChoiceSamples / kChoiceRows);
                 errors.insert(errors.end(), some.begin(), some.end());
             }
             worst = std::max(worst, statistics_of(std::move(errors)).p95);
@@ -37,9 +69,9 @@ double sampled_p95(const Displacer& displacer, const Scene& scene, const Displac
     return worst;
 }
 
-std::vector<double> choice_distances(const DisplacerSettings& settings, bool one_distance) {
+std::vector<double> choice_distances(const DisplacerSettings& settings, bool one_distance, bool over_ground) {
     const double far = settings.far;
-    return one_distance ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
+    return one_distance || over_ground ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
 }
 
 }  // namespace
@@ -47,7 +79,8 @@ std::vector<double> choice_distances(const DisplacerSettings& settings, bool one
 ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double tolerance, bool one_distance,
                          const GainOf& gain_of) {
     settings.sample_errors = true;
-    const std::vector<double> distances = choice_distances(settings, one_distance);
+    const bool over_ground = has_mirage(scene) && !one_distance;
+    const std::vector<double> distances = choice_distances(settings, one_distance, over_ground);
     ModelChoice choice{};
     double rms = 0;
     for (const auto& [name, model] : kModelNames) {
@@ -61,7 +94,7 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
             continue;
         }
         const double gain = gain_of(*displacer);
-        const double p95 = sampled_p95(*displacer, scene, settings, distances, gain);
+        const double p95 = sampled_p95(*displacer, scene, settings, distances, over_ground, gain);
         choice.tried.push_back({model, "", p95});
         rms = displacer->expected_rms(settings.far) * std::abs(gain);
         if (!choice.displacer || p95 < choice.p95) {
@@ -86,7 +119,8 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
 std::optional<Model> sufficient_model(const Scene& scene, DisplacerSettings settings, double tolerance,
                                       bool one_distance, const GainOf& gain_of, Model model, double p95) {
     settings.sample_errors = true;
-    const std::vector<double> distances = choice_distances(settings, one_distance);
+    const bool over_ground = has_mirage(scene) && !one_distance;
+    const std::vector<double> distances = choice_distances(settings, one_distance, over_ground);
     double own = 0;
     for (const auto& [name, other] : kModelNames) {
         if (other < model) continue;
@@ -94,7 +128,7 @@ std::optional<Model> sufficient_model(const Scene& scene, DisplacerSettings sett
         try {
             const Displacer displacer(scene, settings);
             if (displacer.models().empty()) return {};
-            const double sampled = sampled_p95(displacer, scene, settings, distances, gain_of(displacer));
+            const double sampled = sampled_p95(displacer, scene, settings, distances, over_ground, gain_of(displacer));
             if (other == model)
                 own = sampled;
             else if (p95 * sampled <= tolerance * own)

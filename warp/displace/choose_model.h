@@ -3,11 +3,11 @@
 /// The choice is made once a shot, of the scene alone, so that every chunk of its frames makes the same one and it
 /// cannot flicker: at the shot's first frame (under a moving camera also at the middle and the end of its path), on
 /// kChoiceRows rows of pixels, every one of them for objects at each of the distances far/8, far/4, far/2 and far, or
-/// at far alone where the footage is all at one distance. Each model that applies is tried, cheapest first, and its map
-/// is sampled as stated_error.h says: its p95 is the largest 95th percentile of any frame and distance. The first that
-/// is within the tolerance with kChoiceMargin to spare is taken. If none is, it is the one of the least error or, where
-/// even that is off by more than kHopeless of the rms displacement, the default: no time is spent on what is wrong
-/// anyway.
+/// at far alone where the footage is all at one distance or over heated surfaces, which are then before it. Each model
+/// that applies is tried, cheapest first, and its map is sampled as stated_error.h says: its p95 is the largest 95th
+/// percentile of any frame and distance. The first that is within the tolerance with kChoiceMargin to spare is taken.
+/// If none is, it is the one of the least error or, where even that is off by more than kHopeless of the rms
+/// displacement, the default: no time is spent on what is wrong anyway.
 #pragma once
 
 #include <functional>
