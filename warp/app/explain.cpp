@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "warp/app/pipeline.h"
+#include "warp/displace/stated_error.h"
 #include "warp/image/sequence.h"
 
 namespace eikonal {
@@ -83,9 +84,8 @@ void explain(const Shot& shot, const ExplainedRun& run) {
     }
     const Probe probe = measure(shot, run, first);
     fmt::print("frame {}: {:.3g} px rms, {:.3g} px at most\n", first, probe.size.rms, probe.size.largest);
-    fmt::print(
-        "error: 95 of 100 of {} sampled pixels of frame {} are off by {:.2g} px at most, half of them by {:.2g} px\n",
-        probe.error->samples, first, probe.error->p95, probe.error->p50);
+    fmt::print("error: 95 of 100 of {} sampled pixels of frame {} are off by {} at most, half of them by {}\n",
+               probe.error->samples, first, shown_error(probe.error->p95), shown_error(probe.error->p50));
     const double frame = run.instants * (probe.instant + probe.map + probe.resample);
     fmt::print(
         "time: about {:.3g} s a frame on {} thread{} (media {:.2g} s, map {:.2g} s, picture {:.2g} s{}), {:.3g} s in "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "warp/displace/stated_error.h"
 #include "warp/image/atomic_file.h"
 
 namespace eikonal {
@@ -26,8 +27,8 @@ std::optional<std::string> tolerance_warning(const Shot& shot, const RunResult& 
     });
     const std::optional<Model> better = shot.sufficient_model(worst->stated->p95);
     return fmt::format(
-        "--tolerance {:g}: {} of {} frames go beyond it, frame {} by most: {:.2g} px in 95 of 100 sampled pixels; {}",
-        *shot.tolerance(), beyond, result.records.size(), worst->frame, worst->stated->p95,
+        "--tolerance {:g}: {} of {} frames go beyond it, frame {} by most: {} in 95 of 100 sampled pixels; {}",
+        *shot.tolerance(), beyond, result.records.size(), worst->frame, shown_error(worst->stated->p95),
         better ? fmt::format("--model {} should keep within it", name_of(*better))
                : "eikonal-trace render follows the rays truly");
 }
@@ -51,11 +52,11 @@ nlohmann::ordered_json choice_json(const ModelChoice& choice) {
 
 void tell_errors(const Shot& shot, RunResult& result, bool verbose) {
     if (const FrameRecord* worst = worst_frame(result); worst != nullptr && verbose)
-        fmt::print(
-            stderr,
-            "eikonal: stated error: 95 of 100 of {} sampled pixels are off by {:.2g} px at most, half of them by "
-            "{:.2g} px (frame {}, the worst)\n",
-            worst->stated->samples, worst->stated->p95, worst->stated->p50, worst->frame);
+        fmt::print(stderr,
+                   "eikonal: stated error: 95 of 100 of {} sampled pixels are off by {} at most, half of them by "
+                   "{} (frame {}, the worst)\n",
+                   worst->stated->samples, shown_error(worst->stated->p95), shown_error(worst->stated->p50),
+                   worst->frame);
     if (const auto warning = tolerance_warning(shot, result)) {
         fmt::print(stderr, "eikonal: warning: {}\n", *warning);
         result.warnings.push_back(*warning);

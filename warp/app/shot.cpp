@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "noise/error.h"
+#include "warp/displace/stated_error.h"
 #include "warp/image/interrupt.h"
 #include "warp/image/plane.h"
 
@@ -55,17 +56,17 @@ std::vector<std::string> flat_lattices(const Scene& scene) {
 std::string describe(const ModelChoice& choice, double tolerance) {
     if (choice.exact)
         return fmt::format(
-            "auto: nothing to choose, no medium of this scene takes a model; off by {:.2g} px at most in 95 of "
+            "auto: nothing to choose, no medium of this scene takes a model; off by {} at most in 95 of "
             "100 sampled pixels",
-            choice.p95);
+            shown_error(choice.p95));
     std::string others;
     for (const TriedModel& tried : choice.tried)
         if (tried.model != choice.model)
             others += fmt::format("{}{} {}", others.empty() ? "; " : ", ", name_of(tried.model),
-                                  tried.refusal.empty() ? fmt::format("{:.2g} px", tried.p95) : "does not apply");
-    return fmt::format(
-        "auto: model {}, off by {:.2g} px at most in 95 of 100 sampled pixels, {} the tolerance of {:g} px{}",
-        name_of(choice.model), choice.p95, choice.within ? "within" : "beyond", tolerance, others);
+                                  tried.refusal.empty() ? shown_error(tried.p95) : "does not apply");
+    return fmt::format("auto: model {}, off by {} at most in 95 of 100 sampled pixels, {} the tolerance of {:g} px{}",
+                       name_of(choice.model), shown_error(choice.p95), choice.within ? "within" : "beyond", tolerance,
+                       others);
 }
 
 }  // namespace
@@ -140,13 +141,13 @@ void Shot::tell(const std::vector<int>& frames, bool verbose) {
     if (choice_ && choice_->p95 > *tolerance_)
         warnings_.push_back(
             choice_->exact
-                ? fmt::format("--tolerance {:g}: 95 of 100 sampled pixels are off by up to {:.2g} px, and no medium of "
+                ? fmt::format("--tolerance {:g}: 95 of 100 sampled pixels are off by up to {}, and no medium of "
                               "this scene takes a model; eikonal-trace render follows the rays truly",
-                              *tolerance_, choice_->p95)
-                : fmt::format("--tolerance {:g}: no model stays within it; {} is used, off by up to {:.2g} px in 95 of "
+                              *tolerance_, shown_error(choice_->p95))
+                : fmt::format("--tolerance {:g}: no model stays within it; {} is used, off by up to {} in 95 of "
                               "100 sampled pixels (focusing variance {:.2g}; rays fold near 1): eikonal-trace render "
                               "follows the rays truly",
-                              *tolerance_, name_of(choice_->model), choice_->p95, focusing_variance()));
+                              *tolerance_, name_of(choice_->model), shown_error(choice_->p95), focusing_variance()));
     const bool first_order =
         displacer_->models().empty() || displacer_->models().front() != name_of(Model::SecondOrder);
     if (std::abs(gain_) > 1 && first_order)

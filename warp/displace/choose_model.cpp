@@ -94,7 +94,14 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
             continue;
         }
         const double gain = gain_of(*displacer);
-        const double p95 = sampled_p95(*displacer, scene, settings, distances, over_ground, gain);
+        double p95 = 0;
+        try {
+            p95 = sampled_p95(*displacer, scene, settings, distances, over_ground, gain);
+        } catch (const FrameError& refusal) {
+            check_cancelled(settings.cancelled);
+            choice.tried.push_back({model, refusal.what()});
+            continue;
+        }
         choice.tried.push_back({model, "", p95});
         rms = displacer->expected_rms(settings.far) * std::abs(gain);
         if (!choice.displacer || p95 < choice.p95) {
@@ -106,7 +113,8 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
         choice.exact = choice.displacer->models().empty();
         if (kChoiceMargin * choice.p95 <= tolerance || choice.exact) break;
     }
-    if (choice.within || choice.exact || choice.p95 <= kHopeless * rms) return choice;
+    if (choice.displacer && (choice.within || choice.exact || choice.p95 <= kHopeless * rms)) return choice;
+    choice.within = false;
     settings.model.reset();
     choice.displacer = std::make_unique<Displacer>(scene, settings);
     for (const auto& [name, model] : kModelNames)
@@ -131,7 +139,7 @@ std::optional<Model> sufficient_model(const Scene& scene, DisplacerSettings sett
             const double sampled = sampled_p95(displacer, scene, settings, distances, over_ground, gain_of(displacer));
             if (other == model)
                 own = sampled;
-            else if (p95 * sampled <= tolerance * own)
+            else if (std::isfinite(sampled) && p95 * sampled <= tolerance * own)
                 return other;
         } catch (const UserError&) {
             continue;  // does not apply

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
 
@@ -287,7 +288,10 @@ std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window
     const SecondOrderInstant& bent = s.reference();
     return sample_errors(choose_samples(window, depth, uv, samples), [&](const SamplePixel& p) {
         const PixelWindow pixel{p.x, p.y, 1, 1};
-        const std::vector<Band> bands{bent_pixel(bent, s.camera, p.x, p.y, plane ? s.farthest : p.depth)};
+        BentPixel judge = bent_pixel(bent, s.camera, p.x, p.y, plane ? s.farthest : p.depth);
+        constexpr float kUnknown = std::numeric_limits<float>::infinity();
+        if (judge.lost_at < p.depth) return Shift{kUnknown, kUnknown};
+        const std::vector<Band> bands{std::move(judge.band)};
         // the bent ray has passed over the surfaces: mirages only tell which pixels they move
         std::span<const Mirage> mirages = s.mirages_on(pixel);
         BandRows row;

@@ -26,6 +26,7 @@ namespace eikonal {
 using DepthSource = std::variant<double, const DepthPlane*>;
 
 /// What a map is off by, as its own samples say (stated_error.h) [px].
+/// Infinite where the rays that would tell are lost.
 struct StatedError {
     int samples = 0;
     double p50 = 0, p95 = 0, largest = 0;

@@ -115,6 +115,11 @@ void MediaLayers::add_layer(MediumLayer layer) {
             fmt::format("medium.{}: focusing variance {:.2g} at {:g} m: rays fold, where any first-order warp is only "
                         "plausible; weaken the medium, shorten the distance, or widen the aperture",
                         layers_.back().medium, focusing, settings_.far));
+    if (focusing > kHopelessFolding && second_order())
+        warnings_.push_back(
+            fmt::format("medium.{}: focusing variance {:.2g} at {:g} m: rays fold many times over, which no warp can "
+                        "show; weaken the medium or shorten the distance; eikonal-trace render follows the rays truly",
+                        layers_.back().medium, focusing, settings_.far));
 }
 
 void MediaLayers::add(std::size_t i, const TurbulenceSpec& spec) {

@@ -23,7 +23,8 @@
 /// Such a ray may pass behind an object, where the plate does not show it, and comes out again or ends on ground that
 /// is hidden: the ground beside it that is as deep stands in, as far as kFarthestAside. Where there is none, it is the
 /// last visible point before the object's outline, and stands back from its antialiased rim, by kFarthestBack at most.
-/// One that passes over the ground for good stands clear of the horizon, whose pixels mix in some, by kAboveGround at most.
+/// One that passes over the ground for good stands clear of the horizon, whose pixels mix in some, by kAboveGround at
+/// most.
 #pragma once
 
 #include <algorithm>

@@ -30,6 +30,8 @@ constexpr std::string_view name_of(Model model) {
 
 /// Focusing variance from which folding rays are warned of.
 inline constexpr double kFolding = 0.5;
+/// From here on not even second-order holds.
+inline constexpr double kHopelessFolding = 10;
 
 /// A medium, or the dropped parts of one, that together move no pixel by more than this are left out [px].
 inline constexpr double kNegligibleShift = 0.002;

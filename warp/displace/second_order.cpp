@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "noise/error.h"
 #include "warp/displace/aperture.h"
 #include "warp/displace/model.h"
 
@@ -16,7 +18,8 @@ class BentRay {
   public:
     BentRay(const SecondOrderInstant& model, const StraightRay& ray)
         : field_(model.field), longest_(model.step), ray_(ray), launch_(model.field.speed(ray.origin)) {
-        ended_ = !(launch_ > 0);
+        ended_ = without_index_ = !(launch_ > 0);
+        if (ended_) lost_at_ = 0;
     }
 
     /// Follows the ray to axial depth `target`, and tells `visit` the end of every step.
@@ -45,6 +48,7 @@ class BentRay {
                     step(h);
                 z_ = h == left ? target : z_ + h;
                 if (++steps_ == kMostRaySteps || !(glm::length(slope_) < kSteepestBend * ray_.length)) ended_ = true;
+                if (ended_) lost_at_ = z_;
             }
             visit();
         }
@@ -56,6 +60,8 @@ class BentRay {
     }
 
     double depth() const { return z_; }
+    double lost_at() const { return lost_at_; }
+    bool without_index() const { return without_index_; }
     /// X and S of the bent ray where it is at the axial depth that it has been followed to: exact projection.
     std::array<double, 4> shift(const Camera& camera) const {
         const dvec3 p = ray_.direction + slope_;
@@ -85,7 +91,7 @@ class BentRay {
         const dvec3 x = ray_.at(z) + x1, p = ray_.direction + slope;
         const auto [force, speed] = field_.motion(x, p);
         if (!(speed > 0)) {
-            ended_ = true;
+            ended_ = without_index_ = true;
             return {0, 0, 0};
         }
         return (ray_.length * ray_.length / (launch_ * launch_)) * force;
@@ -113,7 +119,8 @@ class BentRay {
     dvec3 force_{0, 0, 0};  ///< where the last step ended
     bool force_known_ = false;
     int steps_ = 0;
-    bool ended_ = false;
+    bool ended_ = false, without_index_ = false;
+    double lost_at_ = std::numeric_limits<double>::infinity();
 };
 
 Node as_node(const std::array<double, 4>& s) {
@@ -122,7 +129,7 @@ Node as_node(const std::array<double, 4>& s) {
 
 /// X and S at the depths, averaged over the aperture.
 std::vector<Node> bundle(const SecondOrderInstant& model, const std::vector<dvec2>& disc, const Camera& camera,
-                         const StraightRay& ray, const std::vector<double>& depths) {
+                         const StraightRay& ray, const std::vector<double>& depths, bool* without_index = nullptr) {
     std::vector<std::array<double, 4>> sum(depths.size());
     for (const dvec2& q : disc) {
         StraightRay part = ray;
@@ -138,6 +145,7 @@ std::vector<Node> bundle(const SecondOrderInstant& model, const std::vector<dvec
             const std::array<double, 4> shift = bent.shift(camera);
             for (std::size_t c = 0; c < 4; ++c) sum[k][c] += shift[c] / static_cast<double>(disc.size());
         }
+        if (without_index != nullptr && bent.without_index()) *without_index = true;
     }
     std::vector<Node> nodes;
     for (const auto& s : sum) nodes.push_back(as_node(s));
@@ -162,12 +170,18 @@ void SecondOrderInstant::fill(Band& band, const Camera& camera) const {
             check_cancelled(cancelled);
             const StraightRay ray =
                 straight_ray(camera, (band.column0 + c) * band.spacing + 0.5, (band.row0 + r) * band.spacing + 0.5);
-            const std::vector<Node> nodes = bundle(*this, disc, camera, ray, band.depths);
+            bool without_index = false;
+            const std::vector<Node> nodes = bundle(*this, disc, camera, ray, band.depths, &without_index);
+            if (without_index)
+                throw FrameError(
+                    "second-order: rays come to where the index of refraction is not positive; lower "
+                    "optics.exaggeration "
+                    "or --gain");
             for (std::size_t k = 0; k < nodes.size(); ++k) band.row(r, k)[c] += nodes[k];
         }
 }
 
-Band bent_pixel(const SecondOrderInstant& model, const Camera& camera, int x, int y, double farthest) {
+BentPixel bent_pixel(const SecondOrderInstant& model, const Camera& camera, int x, int y, double farthest) {
     check_cancelled(model.cancelled);
     Band band = model.band(camera);
     band.spacing = 1;
@@ -184,7 +198,7 @@ Band bent_pixel(const SecondOrderInstant& model, const Camera& camera, int x, in
         nodes = bundle(model, aperture_points(model.aperture, model.cell), camera, ray, band.depths);
     band.cover({x, y, 1, 1});
     band.nodes = std::move(nodes);
-    return band;
+    return {std::move(band), central.lost_at()};
 }
 
 }  // namespace eikonal

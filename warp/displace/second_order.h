@@ -10,8 +10,9 @@
 ///
 /// An aperture is a bundle as in first_order.h, whose bends are averaged. Thin screens are averaged over it already.
 ///
-/// A ray that has turned by more than kSteepestBend, or has met no index, goes on straight from there: that far no warp
-/// holds.
+/// A ray that has turned by more than kSteepestBend goes on straight from there, and one that has turned back is not
+/// moved: that far no warp holds. It is lost to those whom it should judge. Where rays come to no index (n <= 0) there
+/// is no map.
 #pragma once
 
 #include "noise/field.h"
@@ -54,12 +55,16 @@ struct SecondOrderInstant {
 
     /// A band without nodes, to be covered and filled.
     Band band(const Camera& camera) const;
-    /// Adds X and S at every node and depth. FrameError once cancelled.
+    /// Adds X and S at every node and depth. FrameError once cancelled, and where a ray comes to n <= 0.
     void fill(Band& band, const Camera& camera) const;
 };
 
-/// The ray of one pixel alone, without interpolation from nodes: a filled band that covers it, whose layers are the
-/// ray's own steps up to axial depth `farthest` [m]. What the other models are measured by.
-Band bent_pixel(const SecondOrderInstant& model, const Camera& camera, int x, int y, double farthest);
+/// The ray of one pixel alone, without interpolation from nodes.
+struct BentPixel {
+    Band band;       ///< filled, covers the pixel; its layers are the ray's own steps
+    double lost_at;  ///< axial depth from which on there is no telling where the ray is; infinite: nowhere [m]
+};
+/// Up to axial depth `farthest` [m]. What the other models are measured by.
+BentPixel bent_pixel(const SecondOrderInstant& model, const Camera& camera, int x, int y, double farthest);
 
 }  // namespace eikonal

@@ -1,5 +1,6 @@
 #include "warp/displace/stated_error.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -93,6 +94,10 @@ std::vector<double> sample_errors(const std::vector<SamplePixel>& samples,
         errors[i] = std::sqrt(ex * ex + ey * ey);
     });
     return errors;
+}
+
+std::string shown_error(double px) {
+    return std::isfinite(px) ? fmt::format("{:.2g} px", px) : "an unknown number of px";
 }
 
 StatedError statistics_of(std::vector<double> errors) {

@@ -22,6 +22,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "warp/displace/displacer.h"
@@ -48,6 +49,9 @@ std::vector<SamplePixel> choose_samples(const PixelWindow& window, const DepthSo
 /// |map - truth(pixel)| of every sample [px]. In parallel.
 std::vector<double> sample_errors(const std::vector<SamplePixel>& samples,
                                   const std::function<Shift(const SamplePixel&)>& truth);
+
+/// "0.12 px", or what stands for an infinite error.
+std::string shown_error(double px);
 
 /// Nearest-rank percentiles of at least one error.
 StatedError statistics_of(std::vector<double> errors);
