@@ -19,8 +19,11 @@ namespace eikonal::reference {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kTileSize = 32;
+/// Small pictures of slow rays need tiles enough for all threads.
+constexpr int kTileSize = 32, kSmallTile = 8, kSmallPicture = 256 * 256;
 constexpr int kSightRays = 33;
+/// A ray wanders that is nearer its start than this part of its length.
+constexpr double kStraightEnough = 0.8;
 /// What is ahead of a ray is looked at in this part of the way to it.
 constexpr double kStrides = 16;
 constexpr float kTrappedId = -1, kNoIndexId = -2, kUnfinishedId = -3;
@@ -33,8 +36,8 @@ double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-int tiles_across(int pixels) {
-    return (pixels + kTileSize - 1) / kTileSize;
+int tiles_across(int pixels, int side) {
+    return (pixels + side - 1) / side;
 }
 
 float storable(double radiance) {
@@ -136,8 +139,12 @@ double Renderer::sight(const Camera& camera, const TraceSettings& trace, double 
     return longest;
 }
 
+int Renderer::tile_size() const {
+    return width_ * height_ < kSmallPicture ? kSmallTile : kTileSize;
+}
+
 int Renderer::tile_count() const {
-    return tiles_across(width_) * tiles_across(height_);
+    return tiles_across(width_, tile_size()) * tiles_across(height_, tile_size());
 }
 
 RenderedFrame Renderer::planes(int width, int height, bool colour) const {
@@ -181,8 +188,9 @@ RenderedFrame Renderer::render(int frame, const FrameWatch& watch) const {
                               watch.light);
     if (watch.tiles_begin) watch.tiles_begin();
     tbb::parallel_for(0, tile_count(), [&](int index) {
-        const int x0 = index % tiles_across(width_) * kTileSize, y0 = index / tiles_across(width_) * kTileSize;
-        render_tile(camera, frame, {x0, y0, std::min(x0 + kTileSize, width_), std::min(y0 + kTileSize, height_)},
+        const int side = tile_size(), columns = tiles_across(width_, side);
+        const int x0 = index % columns * side, y0 = index / columns * side;
+        render_tile(camera, frame, {x0, y0, std::min(x0 + side, width_), std::min(y0 + side, height_)},
                     air ? &*air : nullptr, result);
         if (watch.tile_done) watch.tile_done();
     });
@@ -259,15 +267,21 @@ Probe Renderer::try_rays(const Camera& camera, int frame, Air* air, const ProbeL
 }
 
 /// Of a ray that was given up: as if it went on, along the straight one and to where that ends, at the same number of
-/// steps for each of the longest that the field allows.
+/// steps for each of the longest that the field allows. One that wanders comes twice as far in four times the steps.
+/// One that is past that end has missed it.
 double Renderer::steps_to_come(const Camera& camera, int x, int y, const Air& air, const BentHit& tried) const {
     const CameraRay ray = camera_ray(camera, x + 0.5, y + 0.5);
     const dvec3 direction = glm::normalize(ray.direction);
     const auto hit = geometry_.nearest(ray.origin, direction, 0, air.trace.far);
-    const double end = hit ? hit->t : air.trace.far;
-    const double taken = longest_steps(air.field, ray.origin, direction, 0, tried.length);
-    const double ahead = longest_steps(air.field, ray.origin, direction, tried.length, end);
-    return taken > 0 ? tried.steps * (ahead / taken) : kInfinity;
+    const double way = glm::distance(tried.at.x, ray.origin);
+    const bool wanders = way < kStraightEnough * tried.length;
+    const double come = wanders ? way : tried.length;
+    const double end = hit && hit->t > come ? hit->t : air.trace.far;
+    const double taken = longest_steps(air.field, ray.origin, direction, 0, come);
+    const double ahead = longest_steps(air.field, ray.origin, direction, come, end);
+    if (!(taken > 0)) return kInfinity;
+    const double times = 1 + ahead / taken;
+    return tried.steps * ((wanders ? times * times : times) - 1);
 }
 
 double Probe::time(double area, int samples_each) const {

@@ -117,6 +117,7 @@ class Renderer {
         int x0, y0, x1, y1;
     };
     struct Air;
+    int tile_size() const;
     std::optional<Air> air_at(int frame, const Camera& camera) const;
     RenderedFrame planes(int width, int height, bool colour) const;
     Probe try_rays(const Camera& camera, int frame, Air* air, const ProbeLimits& limits) const;

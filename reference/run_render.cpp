@@ -22,6 +22,9 @@ namespace {
 /// Part of the rays tried that may have no end before a frame's user is warned.
 constexpr double kManyWithoutEnd = 0.05;
 
+/// What adaptive's own estimate of its error is more than the error, about.
+constexpr double kPessimism = 4;
+
 using Clock = std::chrono::steady_clock;
 
 FilePattern checked_pattern(const RenderOptions& o, std::size_t frame_count) {
@@ -34,7 +37,7 @@ FilePattern checked_pattern(const RenderOptions& o, std::size_t frame_count) {
 
 /// What of a frame its user should know.
 void report(const RenderOptions& o, const RenderedFrame& frame, int number, double seconds) {
-    const auto warn = [&](std::size_t pixels, const char* what) {
+    const auto warn = [&](std::size_t pixels, std::string_view what) {
         if (pixels > 0)
             fmt::print(stderr, "frame {}: warning: {} of {} pixels {}\n", number, pixels, frame.id.size(), what);
     };
@@ -42,6 +45,13 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
          "hold rays that go round and round (id -1, black): the media are too strong");
     warn(frame.unfinished(), "hold rays that the step budget ended (id -3, black); --step-budget raises it");
     warn(frame.without_index(), "hold rays that came to where n <= 0 (id -2, black); lower [optics] exaggeration");
+    const auto beyond = static_cast<std::size_t>(std::count_if(
+        frame.error.begin(), frame.error.end(), [&](float e) { return e > kPessimism * o.render.rays.tolerance_px; }));
+    if (o.render.rays.integrator == Integrator::Adaptive)
+        warn(beyond, fmt::format("may be off by more than the tolerance of {:g} px, by up to {:.2g} px as their rays "
+                                 "estimate it; a smaller --tolerance brings them nearer",
+                                 o.render.rays.tolerance_px,
+                                 frame.error.empty() ? 0 : *std::max_element(frame.error.begin(), frame.error.end())));
     if (!frame.magnification.empty())
         fmt::print(stderr, "frame {}: {} of {} pixels are folded (negative magnification)\n", number, frame.folded(),
                    frame.id.size());
