@@ -2,9 +2,9 @@
 ///
 /// Displacement, steps, error and time are of a probe (ProbeLimits in render.h): pixels spread over the first frame, as
 /// many as kExplainedSeconds suffice for, up to kMostExplained. So it takes seconds whatever the scene: rays that do
-/// not end within the probe's steps are counted, and taken to go on at their pace to where the straight ones end, or to
-/// their budget. Displacement and error are of the rays that came to an end, or said to be unknown. The times are this
-/// machine's, now; memory is what the process has come to hold, and what a frame's planes take.
+/// not end within the probe's steps are counted, and taken to go on, at what the air ahead costs, to where the straight
+/// ones end, or to their budget. Displacement and error are of the rays that came to an end, or said to be unknown. The
+/// times are this machine's, now; memory is what the process has come to hold, and what a frame's planes take.
 #pragma once
 
 #include <vector>

@@ -73,7 +73,7 @@ struct Probe {
     RenderedFrame pixels;           ///< those tried, in one row, under straight sunlight
     int samples = 0;                ///< of colour a pixel
     int step_limit = 0;             ///< what ended the rays that `pixels` count as unfinished
-    double steps_to_come = 0;       ///< that those rays would still take, at their pace, up to their budget
+    double steps_to_come = 0;       ///< that those rays would still take, up to their budget
     std::size_t beyond = 0;         ///< of them, those that would use up their budget
     double setup = 0, seconds = 0;  ///< wall time: of the media, of the rays
 

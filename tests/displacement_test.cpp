@@ -297,6 +297,28 @@ TEST(Displacement, ScreensHaveTheVarianceOfAngleOfArrival) {
     }
 }
 
+TEST(Displacement, ExpectedRmsOfRareBlobs) {
+    BlobsSpec rare;
+    rare.sources = {
+        {.from = {0, 0.1, -3}, .rate = 1, .temperature = 900, .sigma = 0.1, .cooling = 0.5, .lifetime = 0.2}};
+    Scene scene;
+    scene.camera.position = {0, 0, 0};
+    scene.camera.look_at = {0, 0, -1};
+    scene.camera.horizontal_fov = 40;
+    scene.time.fps = 24;
+    scene.optics.exaggeration = 20;
+    scene.media = {rare};
+    const Displacer displacer(scene, sized(64, 36, 6));
+    double sum = 0;
+    constexpr int kFrames = 480;
+    for (int frame = 0; frame < kFrames; ++frame) {
+        const double r = rms(map_of(displacer, frame, {0, 0, 64, 36}, 6));
+        sum += r * r / kFrames;
+    }
+    EXPECT_GT(displacer.expected_rms(6), 0.4 * std::sqrt(sum));
+    EXPECT_LT(displacer.expected_rms(6), 2.5 * std::sqrt(sum));
+}
+
 TEST(Displacement, ExpectedRmsIsTheRealisedOne) {
     const Displacer displacer(long_view(0.01), sized(160, 90, 400));
     for (const double D : {400.0, 60.0}) {

@@ -380,6 +380,34 @@ TEST(Mirage, PlateShowsWhatLiesBehindInverted) {
     }
 }
 
+// A plate's horizon is antialiased: mirrored sky is read clear of it.
+TEST(Mirage, TheMirrorShowsNoneOfTheHorizon) {
+    constexpr float kSky = 1e6F;
+    std::vector<float> metres;
+    for (int y = 0; y < kPlate.height; ++y)
+        for (int x = 0; x < kPlate.width; ++x) {
+            const double v = y + 0.7 - kHorizon;  // it crosses a row
+            metres.push_back(v > 0 ? static_cast<float>(kHeight * kFocal / v) : kSky);
+        }
+    Camera camera = level(kHeight, kFocal, kPlate.width, kPlate.height);
+    camera.center.y -= 0.2;
+    const std::vector<Mirage> mirages{mirage_of(surface(320, 0.01), camera, kSky)};
+    const DepthPlane depth(kPlate, std::move(metres));
+    const MeetTile meet(depth, kPlate, DepthMeeting::March, static_cast<int>(mirages[0].largest_shift(kPlate)) + 4,
+                        mirages);
+    BandRows rows;
+    std::vector<float> uv(2 * kPlate.area());
+    const double critical = std::sqrt(-2 * index_law({}).above_ambient(320)) * kFocal;
+    for (int y = 0; y < kPlate.height; ++y) {
+        rows.start({}, y, mirages);
+        meet.row(rows, y, uv.data() + 2 * static_cast<std::size_t>(y * kPlate.width));
+        if (y < kHorizon + 1 || y > kHorizon + critical - 2) continue;
+        const double source = Plate::source(uv, 80, y);
+        EXPECT_LE(std::floor(source) + 2, kHorizon - 1) << y << ' ' << source;
+        EXPECT_NEAR(source, 2 * kHorizon - y, 5) << y;
+    }
+}
+
 TEST(Mirage, BehindAPostStandsTheGroundBesideIt) {
     constexpr double kTall = 1;
     const Plate plate(surface(270, 1), kTall);

@@ -119,6 +119,18 @@ TEST_F(ModelTest, ExplainTellsAndWritesNothing) {
                              "px rms expected at 30 m", "error: 95 of 100 of 64", "time: about", "memory: about"})
         EXPECT_NE(ended.out.find(line), std::string::npos) << line << " in " << ended.out;
     EXPECT_EQ(names(), before);
+    // the frame's own depth, and the error that its run states
+    const Words varied{"map", "--scene", "air.toml", "-o", "d.exr", "--ground", "1.5,45%"};
+    Words explain = varied, told = varied;
+    explain.push_back("--explain");
+    told.push_back("-v");
+    const std::string expected = run(explain).out, stated = run(told).err;
+    const auto figure = [](const std::string& text, const std::string& words) {
+        const auto at = text.find(words);
+        return at == std::string::npos ? "nothing"
+                                       : text.substr(at + words.size(), text.find(" px", at) - at - words.size());
+    };
+    EXPECT_EQ(figure(expected, "of frame 1 are off by "), figure(stated, "sampled pixels are off by "));
     const Ended nothing = run({"map", "-o", "m.exr", "--scene", "air.toml", "--set", "medium.0.cn2=0", "--explain"});
     EXPECT_EQ(nothing.status, 0) << nothing.err;
     EXPECT_NE(nothing.out.find("medium.0: left out, its strength is zero"), std::string::npos) << nothing.out;

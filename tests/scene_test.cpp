@@ -1,5 +1,6 @@
 // The scene reader: every key, every kind of mistake and its message, --set, seeds, presets.
 #include "warp/scene/scene.h"
+#include "warp/scene/background.h"
 
 #include <gtest/gtest.h>
 
@@ -159,6 +160,9 @@ TEST(Scene, SurfaceBlobsProfile) {
     ASSERT_EQ(blobs.sources.size(), 1u);
     EXPECT_EQ(blobs.sources[0].to, std::optional(dvec3(1, 0, 0)));
     EXPECT_EQ(blobs.sources[0].lifetime, 4);
+    EXPECT_FALSE(medium<BlobsSpec>(parse("[[medium]]\ntype = \"blobs\"\nsource = [{from = [0, 1, 2], lifetime = 1}]"))
+                     .sources[0]
+                     .to);
     EXPECT_EQ(blobs.wind->rms, 0.7);
     EXPECT_EQ(blobs.wind->rise, dvec3(0, 2, 0));
     EXPECT_TRUE(medium<BlobsSpec>(parse("[[medium]]\ntype = \"blobs\"\nblob = []")).blobs.empty());
@@ -454,6 +458,26 @@ TEST(Presets, FolderFromTheEnvironment) {
     EXPECT_EQ(error_of([] { list_presets(); }),
               "EIKONAL_SAMPLES=/no/such/folder: there is no folder '/no/such/folder/presets'");
     ::unsetenv("EIKONAL_SAMPLES");
+}
+
+TEST(Background, LiesBehindAllThatIsInSight) {
+    Scene scene;
+    EXPECT_EQ(default_far(scene), kDefaultFar);
+    scene.media = {SurfaceSpec{}};
+    EXPECT_EQ(default_far(scene), kDefaultSky);
+    EXPECT_TRUE(has_mirage(scene));
+    scene.media.emplace_back(TurbulenceSpec{});
+    EXPECT_EQ(default_far(scene), kDefaultFar);
+    EXPECT_TRUE(has_mirage(scene));
+    scene.media = {SurfaceSpec{.surface_temperature = scene.optics.ambient_temperature}};
+    EXPECT_FALSE(has_mirage(scene));
+    EXPECT_EQ(default_far(scene), kDefaultFar);
+    std::vector<float> metres{5, 1000, 1200, 1000};
+    put_background_behind(metres, 1000);
+    EXPECT_EQ(metres, (std::vector<float>{5, 1200, 1200, 1200}));
+    metres = {5, 1000, 700};
+    put_background_behind(metres, 1000);
+    EXPECT_EQ(metres, (std::vector<float>{5, 1000, 700}));
 }
 
 }  // namespace

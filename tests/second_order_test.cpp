@@ -109,6 +109,17 @@ TEST(SecondOrder, DiffersFromFirstOrderByTheSquareOfTheStrength) {
     EXPECT_NEAR(strong_gap / weak_gap, 16, 1.6);
 }
 
+// The middle of a very hot blob has no index: no map from there, and no telling what a first-order one is off by.
+TEST(SecondOrder, WithoutAnIndexThereIsNoMap) {
+    Scene scene = blob_scene(2e4);
+    std::get<BlobsSpec>(scene.media[0]).blobs[0].center = scene.camera.position;
+    EXPECT_THROW(map_of(scene, settings_for(40), Model::SecondOrder, 40), FrameError);
+    StatedError stated;
+    for (const float v : map_of(scene, settings_for(40), Model::FirstOrder, 40, &stated)) ASSERT_TRUE(std::isfinite(v));
+    EXPECT_TRUE(std::isinf(stated.largest));
+    EXPECT_EQ(shown_error(stated.largest), "an unknown number of px");
+}
+
 // Every kind of medium: the steps of a map's rays against finer ones.
 TEST(SecondOrder, StepsAreAsAccurateAsStated) {
     for (const Scene& scene : {blob_scene(300), lattice_scene(false), screen_scene(2e-13)}) {

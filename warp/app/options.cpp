@@ -209,7 +209,8 @@ void add_strength(CLI::App& app, StrengthOptions& o) {
     app.add_option("--mask", o.mask, "matte that scales the displacement, 0 … 1")->type_name("FILE[:CHANNEL]");
     add_number(app, "--rms", o.rms, "PX", "scale the displacement to this rms at --far, fixed over the shot",
                "0 or more", not_negative);
-    add_number(app, "--gain", o.gain, "X", "multiply the displacement", "0 or more", not_negative);
+    add_number(app, "--gain", o.gain, "X", "multiply the displacement (second-order: the air's strength)", "0 or more",
+               not_negative);
     add_choice(app, "--model", o.model, kModels,
                "how displacement is computed (default: what suits each medium); auto: the cheapest within --tolerance");
     add_number(app, "--tolerance", o.tolerance, "PX",
