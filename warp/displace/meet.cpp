@@ -147,9 +147,10 @@ struct SkimmingRay : Ray {
         }
         return settled(d);
     }
-    /// The nearest ground in sight as deep as `end`, where the ray ends on ground that is hidden: to either side of it,
-    /// along the plane, hence at right angles to the ray's way `along` over the screen.
-    std::optional<Shift> ground_beside(Shift end, Shift along) const {
+    /// What stands in for `end`, where a ray ends that has passed behind an object at depth `passed`: to either side of
+    /// it, along the plane, hence at right angles to the ray's way `along` over the screen. The nearest ground as deep,
+    /// where it ends on ground, else the nearest that lies behind the object.
+    std::optional<Shift> beside(Shift end, Shift along, double passed) const {
         constexpr double kAlike = 0.05;
         const float length = std::sqrt(along.x * along.x + along.y * along.y);
         if (!(length > 0)) return std::nullopt;
@@ -161,7 +162,9 @@ struct SkimmingRay : Ray {
                 const int i = x + whole(there.x + 0.5f), j = y + whole(there.y + 0.5f);
                 if (i < w.x0 || j < w.y0 || i >= w.x0 + w.width || j >= w.y0 + w.height) continue;
                 const float seen = depth.at(i, j);
-                if (ground.is(i, j, seen) && std::abs(seen - last) <= kAlike * last && !at_edge(there, seen))
+                const bool on_ground = ground.is(i, j, seen);
+                if (ends_on_ground ? on_ground && std::abs(seen - last) <= kAlike * last && !at_edge(there, seen)
+                                   : !on_ground && seen > passed && !at_edge(there, kEdgeRatio * seen))
                     return there;
             }
         return std::nullopt;
@@ -286,7 +289,7 @@ Shift skim(const SkimmingRay& ray, double nearest) {
             const auto [open, there] = follow_hidden(ray, {next, e});
             if (ray.under(there).stop <= open) {
                 if (ray.under(there).stop == open) return ray.settled(there);
-                return ray.ends_on_ground ? ray.ground_beside(there, way).value_or(*in_sight) : *in_sight;
+                return ray.beside(there, way, next).value_or(*in_sight);
             }
             next = open;
             e = there;
