@@ -20,11 +20,11 @@
 /// itself stands in for the pixels upon it (mirage.h): they are in no such ray's way, the ray ends where it meets the
 /// plane, and it leaps over them as far as no object is about. For FixedPoint and Own, too, the depth of such a pixel
 /// is where the ray ends, or the farthest one if it passes over the ground for good. Other rays meet ground as ever.
-/// Such a ray may pass behind an object, where the plate does not show it, and comes out again or ends on what
-/// is hidden: the ground beside it that is as deep stands in, or what lies behind the object where it does not end on
-/// ground, as far as kFarthestAside. Where there is none, it is the last visible point before the object's outline, and stands back from its antialiased rim, by kFarthestBack at most.
-/// One that passes over the ground for good stands clear of the horizon, whose pixels mix in some, by kAboveGround at
-/// most.
+/// Such a ray may pass behind an object, where the plate does not show it, and comes out again or ends on what is
+/// hidden: the ground beside it that is as deep stands in, or what lies behind the object where it does not end on
+/// ground, as far as kFarthestAside. Where there is none, it is the last visible point before the object's outline, and
+/// stands back from its antialiased rim, by kFarthestBack at most. One that passes over the ground for good stands clear
+/// of the horizon, whose pixels mix in some, by kAboveGround at most.
 #pragma once
 
 #include <algorithm>
