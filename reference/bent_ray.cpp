@@ -294,6 +294,10 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
 
 }  // namespace
 
+bool too_far_off(const BentHit& end, double tolerance_px) {
+    return end.ended() && end.error_px > kPessimism * tolerance_px;
+}
+
 SurfaceSearch::Deviation chord_deviation(const TraceSettings& settings) {
     const double half = 0.5 * settings.tolerance_px * settings.pixel;
     return settings.perspective ? SurfaceSearch::Deviation{half, 0} : SurfaceSearch::Deviation{0, half};
@@ -310,8 +314,19 @@ BentHit trace(const FieldInstant& field, const Geometry* geometry, const dvec3& 
         case Integrator::SecondOrder:
             return trace_perturbed(field, geometry, origin, direction, settings, recorder);
         default:
-            return Tracer(field, geometry, settings, bundle, recorder).run(origin, direction);
+            break;
     }
+    const std::optional<Bundle> launched = bundle ? std::optional(*bundle) : std::nullopt;
+    BentHit result = Tracer(field, geometry, settings, bundle, recorder).run(origin, direction);
+    if (settings.integrator != Integrator::Adaptive || !too_far_off(result, settings.tolerance_px)) return result;
+    // Errors of steps add up: with so much less of them, the ray anew.
+    TraceSettings finer = settings;
+    for (int i = 0; i < kMostRetries && too_far_off(result, settings.tolerance_px); ++i) {
+        finer.tolerance_px *= settings.tolerance_px / result.error_px;
+        if (bundle) *bundle = *launched;
+        result = Tracer(field, geometry, finer, bundle, recorder).run(origin, direction);
+    }
+    return result;
 }
 
 }  // namespace eikonal::reference

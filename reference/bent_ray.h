@@ -120,7 +120,15 @@ struct BentHit {
     }
 };
 
-/// Called with every step that the ray takes. Those after its end may be among them.
+/// What adaptive's estimate of its error is more than the error, about; and how often a ray is followed anew, in finer
+/// steps, whose estimate is that much above its tolerance.
+inline constexpr double kPessimism = 2;
+inline constexpr int kMostRetries = 2;
+/// Whether it is, of a ray that came to an end.
+bool too_far_off(const BentHit& end, double tolerance_px);
+
+/// Called with every step that the ray takes. Those after its end may be among them, and a ray that is followed anew
+/// begins at u = 0 again.
 using StepRecorder = std::function<void(const Step&)>;
 
 /// geometry may be null: nothing is met. direction: unit. bundle, if given, comes as its pixels leave the origin (x

@@ -51,6 +51,7 @@ BentHit write_path(const FieldInstant& field, const Geometry* geometry, const dv
                    const TraceSettings& settings, std::ostream& stream, const std::string& name) {
     std::vector<Step> steps;
     const auto record = [&](const Step& step) {
+        if (step.from.u == 0) steps.clear();
         if (step.h > 0) steps.push_back(step);
     };
     const bool perturbed =

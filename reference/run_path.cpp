@@ -66,6 +66,10 @@ int run(const PathOptions& o) {
         end = write(std::cout, "standard output");
         std::cout.flush();
     }
+    if (trace.integrator == Integrator::Adaptive && too_far_off(end, o.tolerance))
+        fmt::print(stderr,
+                   "warning: its end may be off by {:.2g} m, as it estimates, and not only by --tolerance {:g}\n",
+                   end.error_px, o.tolerance);
     fmt::print(stderr, "the ray {} at u = {:.9g} m after {} steps\n", ending(end), end.at.u, end.steps);
     return end.ended() ? 0 : 1;
 }

@@ -22,9 +22,6 @@ namespace {
 /// Part of the rays tried that may have no end before a frame's user is warned.
 constexpr double kManyWithoutEnd = 0.05;
 
-/// What adaptive's own estimate of its error is more than the error, about.
-constexpr double kPessimism = 4;
-
 using Clock = std::chrono::steady_clock;
 
 FilePattern checked_pattern(const RenderOptions& o, std::size_t frame_count) {
