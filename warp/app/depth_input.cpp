@@ -1,5 +1,4 @@
 #include "warp/app/depth_input.h"
-#include "warp/scene/background.h"
 
 #include <fmt/format.h>
 

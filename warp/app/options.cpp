@@ -1,5 +1,4 @@
 #include "warp/app/options.h"
-#include "warp/scene/background.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 
 #include "noise/error.h"
 #include "warp/app/help_format.h"
+#include "warp/scene/background.h"
 #include "warp/scene/message.h"
 
 namespace eikonal {

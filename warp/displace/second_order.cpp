@@ -13,19 +13,19 @@ namespace {
 
 /// How near an edge a step ends, or begins behind it, as a part of the path: beyond what rounding may confuse.
 constexpr double kHair = 1e-9;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class BentRay {
   public:
     BentRay(const SecondOrderInstant& model, const StraightRay& ray)
         : field_(model.field), longest_(model.step), ray_(ray), launch_(model.field.speed(ray.origin)) {
-        ended_ = without_index_ = !(launch_ > 0);
-        if (ended_) lost_at_ = 0;
+        if (!(launch_ > 0)) lose_index(0);
     }
 
     /// Follows the ray to axial depth `target`, and tells `visit` the end of every step.
     template <class Visit>
     void advance(double target, Visit&& visit) {
-        while (z_ < target && !ended_) {
+        while (z_ < target && !(lost_at_ < kInfinity)) {
             const dvec3 x = ray_.at(z_) + x1_, p = ray_.direction + slope_;
             const double length = glm::length(p);
             const dvec3 direction = p / length;
@@ -47,8 +47,8 @@ class BentRay {
                 else
                     step(h);
                 z_ = h == left ? target : z_ + h;
-                if (++steps_ == kMostRaySteps || !(glm::length(slope_) < kSteepestBend * ray_.length)) ended_ = true;
-                if (ended_) lost_at_ = z_;
+                if (++steps_ == kMostRaySteps || !(glm::length(slope_) < kSteepestBend * ray_.length))
+                    lost_at_ = std::min(lost_at_, z_);
             }
             visit();
         }
@@ -82,6 +82,11 @@ class BentRay {
         return first + (longest_ - 1) * field_.longest_step(x + first * direction, direction);
     }
 
+    void lose_index(double z) {
+        without_index_ = true;
+        lost_at_ = std::min(lost_at_, z);
+    }
+
     void drift(double h) {
         x1_ += h * slope_;
         force_known_ = false;
@@ -91,7 +96,7 @@ class BentRay {
         const dvec3 x = ray_.at(z) + x1, p = ray_.direction + slope;
         const auto [force, speed] = field_.motion(x, p);
         if (!(speed > 0)) {
-            ended_ = without_index_ = true;
+            lose_index(z);
             return {0, 0, 0};
         }
         return (ray_.length * ray_.length / (launch_ * launch_)) * force;
@@ -119,8 +124,8 @@ class BentRay {
     dvec3 force_{0, 0, 0};  ///< where the last step ended
     bool force_known_ = false;
     int steps_ = 0;
-    bool ended_ = false, without_index_ = false;
-    double lost_at_ = std::numeric_limits<double>::infinity();
+    double lost_at_ = kInfinity;  ///< from there on it is not followed
+    bool without_index_ = false;  ///< for want of an index
 };
 
 Node as_node(const std::array<double, 4>& s) {
@@ -175,8 +180,7 @@ void SecondOrderInstant::fill(Band& band, const Camera& camera) const {
             if (without_index)
                 throw FrameError(
                     "second-order: rays come to where the index of refraction is not positive; lower "
-                    "optics.exaggeration "
-                    "or --gain");
+                    "optics.exaggeration or --gain");
             for (std::size_t k = 0; k < nodes.size(); ++k) band.row(r, k)[c] += nodes[k];
         }
 }

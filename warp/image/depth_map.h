@@ -30,6 +30,7 @@ namespace eikonal {
 
 inline constexpr float kNearestDepth = 1e-6f;  ///< [m]
 inline constexpr float kInfiniteDepth = 1e9f;  ///< [m]
+inline constexpr double kDefaultFar = 1000;    ///< distance of the background where nothing states it [m]
 
 enum class DepthType { Z, Ray, Inverse };
 
@@ -37,7 +38,7 @@ struct DepthOptions {
     std::string channel;  ///< empty: Z, depth.Z, depth, else the only channel, else grey colour
     DepthType type = DepthType::Z;
     std::optional<std::array<double, 2>> range;  ///< NEAR, FAR [m]; NEAR may be the larger
-    double far = 1000;                           ///< of the background [m] > 0
+    double far = kDefaultFar;                    ///< of the background [m] > 0
 };
 
 /// Depth of every pixel of a window, finite and positive.

@@ -7,13 +7,14 @@
 
 #include <vector>
 
+#include "warp/image/depth_map.h"
 #include "warp/scene/scene.h"
 
 namespace eikonal {
 
-/// Distance of the background where nothing states it [m]: of any air, and where surfaces are all that bends, for which
-/// no distance costs anything.
-inline constexpr double kDefaultFar = 1000, kDefaultSky = 1e6;
+/// Distance of the background where nothing states it and surfaces are all that bends, for which no distance costs
+/// anything [m].
+inline constexpr double kDefaultSky = 1e6;
 
 /// Whether there is a surface that is not at ambient temperature.
 bool has_mirage(const Scene& scene);
