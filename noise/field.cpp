@@ -62,6 +62,7 @@ struct TurbulenceBounds {
 
 struct LatticeInstant : TurbulenceBounds {
     std::shared_ptr<const LatticeSnapshot> snapshot;
+    double bend_error;
 
     IndexSample sample(const dvec3& x) const { return snapshot->smooth_sample(x); }
     IndexJet jet(const dvec3& x) const { return snapshot->jet(x); }
@@ -127,6 +128,7 @@ struct ProfileInstant {
 struct LatticeMedium {
     LatticeField field;
     int padding;
+    double bend_error;
 };
 struct ScreenMedium {
     ScreenField field;
@@ -205,7 +207,8 @@ struct FieldInstant::State {
         const double weight = part.weight;
         if (auto* lattice = std::get_if<LatticePart>(&part.medium)) {
             media.push_back({LatticeInstant{{lattice->field->spec().falloff, lattice_step(*lattice->field)},
-                                            std::move(lattice->snapshot)},
+                                            std::move(lattice->snapshot),
+                                            lattice->bend_error},
                              weight});
         } else if (const auto* noise = std::get_if<NoisePart>(&part.medium)) {
             media.push_back(
@@ -346,10 +349,31 @@ double FieldInstant::way_to_edge(const dvec3& x, const dvec3& d) const {
     return state_->least([&](const auto& m) { return m.way_to_edge(x, d); });
 }
 
+FieldInstant::Interpolation FieldInstant::interpolation(const dvec3& from, const dvec3& to) const {
+    // Errors at places apart are independent: squares add up, ∫ (1 - s)² g² ds and ∫ g² ds by the midpoint rule.
+    constexpr int kParts = 32;
+    const double distance = glm::distance(from, to);
+    double shift = 0, turn = 0;
+    for (const Instant& medium : state_->media) {
+        const auto* lattice = std::get_if<LatticeInstant>(&medium.medium);
+        if (!lattice || lattice->bend_error == 0) continue;
+        const double bend = medium.weight * state_->laws.strength() * lattice->bend_error;
+        for (int i = 0; i < kParts; ++i) {
+            const double s = (i + 0.5) / kParts;
+            const double g = lattice->falloff ? falloff_at(*lattice->falloff, from + s * (to - from)).n : 1;
+            const double part = bend * bend * g * g * distance / kParts;
+            turn += part;
+            shift += (1 - s) * (1 - s) * part;
+        }
+    }
+    return {std::sqrt(shift) * distance, std::sqrt(turn)};
+}
+
 struct Field::State {
     Laws laws;
     std::optional<ScreenFrame> frame;
     std::uint64_t memory;  ///< left of what is allowed
+    double bend_error;     ///< allowed [m^-1/2]
     double interpolation_error = 0;
     double blobs = 0;  ///< at a time, of the media so far
     std::vector<Medium> media;
@@ -389,18 +413,20 @@ struct Field::State {
         const auto bytes = [&](int p) {
             return p > 1 ? kSnapshotBytes * static_cast<double>(geometry.spatial_samples()) * p * p * p : 0.0;
         };
-        double error = snapshot_slope_error(field, padding);
-        for (const int p : {2, 3, 4, 5, 6, 8}) {
-            if (error <= kInterpolationError || bytes(p) > static_cast<double>(memory)) break;
+        SnapshotError error = snapshot_error(field, padding);
+        for (const int p : {2, 3, 4, 5, 6, kFinestPadding}) {
+            const bool fine =
+                error.slope <= kInterpolationError && error.bend * std::abs(laws.strength()) <= bend_error;
+            if (fine || bytes(p) > static_cast<double>(memory)) break;
             padding = p;
-            error = snapshot_slope_error(field, p);
+            error = snapshot_error(field, p);
         }
         take(static_cast<std::uint64_t>(bytes(padding)));
-        interpolation_error = std::max(interpolation_error, error);
-        media.emplace_back(LatticeMedium{std::move(field), padding});
+        interpolation_error = std::max(interpolation_error, error.slope);
+        media.emplace_back(LatticeMedium{std::move(field), padding, error.bend});
         return fmt::format(
             "lattice {} x {} x {} x {}, its spline {} times finer, whose force is off by {:.2g} of its rms",
-            geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3], padding, error);
+            geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3], padding, error.slope);
     }
 
     std::string add(const SurfaceSpec& spec, const IndexLaw& law) {
@@ -423,12 +449,13 @@ struct Field::State {
 };
 
 Field::Field(const std::vector<MediumSpec>& media, const OpticsSpec& optics, const std::optional<ScreenFrame>& frame,
-             std::uint64_t memory_limit)
+             std::uint64_t memory_limit, double bend_error)
     : state_(std::make_shared<State>()) {
     const IndexLaw law = index_law(optics);
     state_->laws = {optics.ray_equation, law.ambient(), optics.exaggeration};
     state_->frame = frame;
     state_->memory = memory_limit;
+    state_->bend_error = bend_error;
     for (std::size_t i = 0; i < media.size(); ++i) {
         if (const auto* profile = std::get_if<ProfileSpec>(&media[i])) {
             if (media.size() > 1)
@@ -473,7 +500,8 @@ FieldInstant Field::at(double t) const {
     for (const Medium& medium : state_->media) {
         if (const auto* lattice = std::get_if<LatticeMedium>(&medium))
             instant->add({LatticePart{&lattice->field,
-                                      std::make_shared<const LatticeSnapshot>(lattice->field, t, lattice->padding)}});
+                                      std::make_shared<const LatticeSnapshot>(lattice->field, t, lattice->padding),
+                                      lattice->bend_error}});
         else if (const auto* noise = std::get_if<GradientNoiseField>(&medium))
             instant->add({NoisePart{noise, t}});
         else if (const auto* screens = std::get_if<ScreenMedium>(&medium))

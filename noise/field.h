@@ -14,12 +14,14 @@
 /// z the depth along the frame's axis, with no force along the axis: the same air that the warp bends rays by, *added*
 /// (noise/screen_force.h). They have no index of their own: |dx/du|² = n² holds for every other medium only.
 ///
-/// Lattices are cubic splines through their trigonometric sum at the exact time, so F has continuous derivatives; it is
-/// off the sum's F by Field::interpolation_error, at most kInterpolationError where memory permits. Media of no
-/// strength are left out. Where n <= 0 there is no force but the screens'.
+/// Lattices are cubic splines through their trigonometric sum at the exact time, so F has continuous derivatives; what
+/// it is off the sum's F by is at most kInterpolationError, and bends rays by no more than the field's user asks, where
+/// memory and kFinestPadding permit (FieldInstant::interpolation). Media of no strength are left out. Where n <= 0
+/// there is no force but the screens'.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,13 +51,16 @@ struct ForceJet {
     glm::dmat3 by_direction{0};  ///< ∂F_i/∂p_j at [j][i]: thin screens only
 };
 
-/// Rms error of a lattice's F between its nodes, relative to the rms F, that its splines are padded for.
+/// Rms error of a lattice's F between its nodes, relative to the rms F, that its splines are padded for, and the most
+/// that they are.
 inline constexpr double kInterpolationError = 1e-3;
+inline constexpr int kFinestPadding = 8;
 
 /// Media that are frozen already, for a field put together of them. What is pointed to must outlive the field.
 struct LatticePart {
     const LatticeField* field;
     std::shared_ptr<const LatticeSnapshot> snapshot;
+    double bend_error = 0;  ///< SnapshotError::bend, if that is to be known
 };
 struct NoisePart {
     const GradientNoiseField* field;
@@ -127,6 +132,14 @@ class FieldInstant {
     /// side, end it a hair before the edge (1e-9 of the way) and cross two hairs straight.
     double way_to_edge(const dvec3& x, const dvec3& d) const;
 
+    /// Expected rms of what interpolation in lattices moves a ray's end by, across the ray, and turns it by there.
+    struct Interpolation {
+        double shift = 0;  ///< [m]
+        double turn = 0;   ///< [rad]
+    };
+    /// For a ray between two points that is about straight. *added*
+    Interpolation interpolation(const dvec3& from, const dvec3& to) const;
+
     FieldInstant(FieldInstant&&) noexcept;
     FieldInstant& operator=(FieldInstant&&) noexcept;
     ~FieldInstant();
@@ -141,10 +154,11 @@ class FieldInstant {
 class Field {
   public:
     /// frame: needed for media of form "screens" (std::logic_error without). memory_limit [bytes]: what all of them may
-    /// take, one instant included.
+    /// take, one instant included. bend_error: what interpolation in a lattice may turn rays by after 1 m of them, rms
+    /// [m^-1/2] > 0; it grows as the root of their way.
     /// UserError, naming "medium.N": a profile beside other media, what a medium's own header refuses.
     Field(const std::vector<MediumSpec>& media, const OpticsSpec& optics, const std::optional<ScreenFrame>& frame,
-          std::uint64_t memory_limit);
+          std::uint64_t memory_limit, double bend_error = std::numeric_limits<double>::infinity());
     ~Field();
     Field(Field&&) noexcept;
 

@@ -304,7 +304,7 @@ IndexJet with_falloff(const std::optional<Falloff>& falloff, const dvec3& x, con
                 glm::outerProduct(g.gradient, field.gradient) + g.hessian * field.n};
 }
 
-double snapshot_slope_error(const LatticeField& field, int padding) {
+SnapshotError snapshot_error(const LatticeField& field, int padding) {
     const LatticeGeometry& g = field.geometry();
     // Squared errors of value and slope of the spline along each axis.
     std::array<std::vector<double>, 3> value, slope;
@@ -314,7 +314,7 @@ double snapshot_slope_error(const LatticeField& field, int padding) {
             value[axis].push_back(spline_error(turns) * spline_error(turns));
             slope[axis].push_back(spline_slope_error(turns) * spline_slope_error(turns));
         }
-    double error = 0, power = 0;
+    double error = 0, power = 0, bend = 0;
     std::array<std::size_t, 3> m{};
     const auto count = [&](std::size_t axis) { return m[axis] == 0 ? 1.0 : 2.0; };
     for (m[0] = 0; m[0] < value[0].size(); ++m[0])
@@ -324,13 +324,17 @@ double snapshot_slope_error(const LatticeField& field, int padding) {
                     count(0) * count(1) * count(2) *
                     field.mode_variance(static_cast<int>(m[0]), static_cast<int>(m[1]), static_cast<int>(m[2]));
                 const double values = value[0][m[0]] + value[1][m[1]] + value[2][m[2]];
+                double off = 0, k2 = 0;
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     const double k = bin_wavenumber(static_cast<int>(m[axis]), g.size[axis], g.period[axis]);
-                    power += variance * k * k;
-                    error += variance * k * k * (values - value[axis][m[axis]] + slope[axis][m[axis]]);
+                    off += variance * k * k * (values - value[axis][m[axis]] + slope[axis][m[axis]]);
+                    k2 += k * k;
                 }
+                error += off;
+                power += variance * k2;
+                if (k2 > 0) bend += portable::kPi * off / std::sqrt(k2);
             }
-    return power > 0 ? std::sqrt(error / power) : 0;
+    return power > 0 ? SnapshotError{std::sqrt(error / power), std::sqrt(bend)} : SnapshotError{};
 }
 
 LatticeSnapshot::LatticeSnapshot(const LatticeField& field, double t, int padding)

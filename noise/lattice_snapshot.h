@@ -69,9 +69,16 @@ double spline_transfer(double turns);
 double spline_error(double turns);
 double spline_slope_error(double turns);
 
-/// Expected rms error of a snapshot's gradient, relative to the rms gradient, without falloff: the discrete sum over
-/// the lattice's modes. With cells of l0/2 (von Kármán) and padding 1, 2, 3, 4: 0.19, 0.0096, 0.0022, 8.4e-4.
-double snapshot_slope_error(const LatticeField& field, int padding);
+/// Expected rms errors of a snapshot's gradient, without falloff: discrete sums over the lattice's modes.
+struct SnapshotError {
+    double slope = 0;  ///< relative to the rms gradient
+    /// Of the gradient's integral along a straight ray, across it, after 1 m [m^-1/2]; it grows as the root of the
+    /// way. A wave adds up only on rays along its crests: π <e²>/k over all directions, of a wave whose gradient is
+    /// off by e. Rays near an axis, along which aliases have crests too, are off by that; oblique ones by half. *added*
+    double bend = 0;
+};
+/// With cells of l0/2 (von Kármán) and padding 1, 2, 3, 4 the slope's are 0.19, 0.0096, 0.0022, 8.4e-4.
+SnapshotError snapshot_error(const LatticeField& field, int padding);
 
 /// n - n_ambient (less Nyquist modes) and its gradient at one instant, with falloff. Immutable, thread-safe.
 class LatticeSnapshot {

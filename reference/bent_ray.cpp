@@ -292,19 +292,9 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
     return result_;
 }
 
-}  // namespace
-
-bool too_far_off(const BentHit& end, double tolerance_px) {
-    return end.ended() && end.error_px > kPessimism * tolerance_px;
-}
-
-SurfaceSearch::Deviation chord_deviation(const TraceSettings& settings) {
-    const double half = 0.5 * settings.tolerance_px * settings.pixel;
-    return settings.perspective ? SurfaceSearch::Deviation{half, 0} : SurfaceSearch::Deviation{0, half};
-}
-
-BentHit trace(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
-              const TraceSettings& settings, Bundle* bundle, const StepRecorder& recorder) {
+/// What trace() does, without what interpolation is off by.
+BentHit follow(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
+               const TraceSettings& settings, Bundle* bundle, const StepRecorder& recorder) {
     switch (settings.integrator) {
         case Integrator::Layers:
             return trace_layers(field, geometry, origin, direction, settings, recorder);
@@ -326,6 +316,30 @@ BentHit trace(const FieldInstant& field, const Geometry* geometry, const dvec3& 
         if (bundle) *bundle = *launched;
         result = Tracer(field, geometry, finer, bundle, recorder).run(origin, direction);
     }
+    return result;
+}
+
+}  // namespace
+
+bool too_far_off(const BentHit& end, double tolerance_px) {
+    return end.ended() && end.error_px > kPessimism * tolerance_px;
+}
+
+SurfaceSearch::Deviation chord_deviation(const TraceSettings& settings) {
+    const double half = 0.5 * settings.tolerance_px * settings.pixel;
+    return settings.perspective ? SurfaceSearch::Deviation{half, 0} : SurfaceSearch::Deviation{0, half};
+}
+
+BentHit trace(const FieldInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
+              const TraceSettings& settings, Bundle* bundle, const StepRecorder& recorder) {
+    BentHit result = follow(field, geometry, origin, direction, settings, bundle, recorder);
+    if (settings.integrator == Integrator::Layers || settings.integrator == Integrator::Mirror) return result;
+    const FieldInstant::Interpolation off = field.interpolation(origin, result.at.x);
+    const double way = glm::distance(origin, result.at.x);
+    double seen = off.shift;
+    if (settings.perspective) seen = result.hit ? off.shift / (way + settings.distance) : off.turn;
+    result.error_px += kMostOfRms * seen / settings.pixel;
+    result.error_px = std::min(result.error_px, std::numeric_limits<double>::max());
     return result;
 }
 

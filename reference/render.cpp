@@ -115,7 +115,7 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings)
       path_(scene.camera, width_, height_),
       geometry_(scene_, path_.reference().position),
       shading_(scene_, geometry_) {
-    if (!settings.straight) air_.emplace(scene_, settings.rays);
+    if (!settings.straight) air_.emplace(scene_, settings.rays, ray_ends());
     const bool quads = std::any_of(scene_.objects.begin(), scene_.objects.end(),
                                    [](const ObjectSpec& o) { return o.shape == ObjectShape::Quad; });
     if (settings.light_rays > 0 && (!scene_.light || !quads))
@@ -125,18 +125,24 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings)
                         settings.light_rays, !scene_.light ? "[light]" : "[[object]] of shape quad"));
 }
 
-/// Of an orthographic camera's straight rays, kSightRays² of them, the longest way to what they meet; at least the
-/// scene's far distance, where it sees its background [m].
-double Renderer::sight(const Camera& camera, const TraceSettings& trace, double far) const {
-    if (trace.perspective) return trace.far;
-    double longest = far;
+/// Of kSightRays² straight rays the longest way to what they meet [m]; of one that meets nothing `open`.
+double Renderer::longest_way(const Camera& camera, double open) const {
+    double longest = 0;
     for (int j = 0; j < kSightRays; ++j)
         for (int i = 0; i < kSightRays; ++i) {
             const CameraRay ray = camera_ray(camera, (i + 0.5) / kSightRays * width_, (j + 0.5) / kSightRays * height_);
-            if (const auto hit = geometry_.intersect(ray.origin, glm::normalize(ray.direction), 0, trace.far))
-                longest = std::max(longest, hit->t);
+            const auto hit = geometry_.intersect(ray.origin, glm::normalize(ray.direction), 0, kFarthestSight);
+            longest = std::max(longest, hit ? hit->t : open);
         }
     return longest;
+}
+
+/// Of the shot's narrowest view.
+RayEnds Renderer::ray_ends() const {
+    Camera camera = path_.reference();
+    if (path_.moving()) camera.f_px = std::max(camera.f_px, path_.at(path_.frames()[1]).f_px);
+    return {longest_way(camera, far_distance(scene_)), settings_.rays.tolerance_px / camera.f_px,
+            camera.projection == Projection::Perspective};
 }
 
 int Renderer::tile_size() const {
@@ -174,7 +180,8 @@ std::optional<Renderer::Air> Renderer::air_at(int frame, const Camera& camera) c
     if (settings_.straight) return std::nullopt;
     Air air{air_->at(frame), air_->trace_settings(camera), {}};
     if (air.trace.perspective) air.trace.start_at(air.field, camera.position);
-    air.trace.sight = sight(camera, air.trace, air_->far());
+    const double far = far_distance(scene_);
+    air.trace.sight = air.trace.perspective ? air.trace.far : std::max(far, longest_way(camera, far));
     return air;
 }
 

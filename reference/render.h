@@ -121,7 +121,8 @@ class Renderer {
     std::optional<Air> air_at(int frame, const Camera& camera) const;
     RenderedFrame planes(int width, int height, bool colour) const;
     Probe try_rays(const Camera& camera, int frame, Air* air, const ProbeLimits& limits) const;
-    double sight(const Camera& camera, const TraceSettings& trace, double far) const;
+    double longest_way(const Camera& camera, double open) const;
+    RayEnds ray_ends() const;
     void render_tile(const Camera& camera, int frame, const Tile& tile, const Air* air, RenderedFrame& into) const;
     BentHit render_pixel(const Camera& camera, int frame, int x, int y, const Air* air, int samples, std::size_t i,
                          RenderedFrame& into) const;

@@ -33,7 +33,7 @@ const char* ending(const BentHit& end) {
 
 int run(const PathOptions& o) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
-    const SceneAir air(scene, o.rays);
+    const SceneAir air(scene, o.rays, {o.length, o.tolerance, false});
     // From the surface itself a ray may start.
     if (const auto below = air.below_surface(o.origin); below && below->depth > 0)
         throw UserError(fmt::format(

@@ -1,6 +1,7 @@
 #include "reference/scene_air.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "noise/memory.h"
@@ -11,31 +12,33 @@
 namespace eikonal::reference {
 namespace {
 
-/// Length of path after which a ray has met nothing [m], if the scene states no farther.
-constexpr double kFarthestSight = 1e6;
-
-double far_of(const Scene& scene) {
-    return scene.plate.far.value_or(scene.plate.distance.value_or(default_far(scene)));
+/// What interpolation may bend a ray by after 1 m [m^-1/2], to be off by half of the tolerance as it ends.
+double bend_error(const RayEnds& ends) {
+    return 0.5 * ends.tolerance / kMostOfRms / (std::sqrt(ends.way / 3) * (ends.seen_from_start ? 1 : ends.way));
 }
 
-Field make_field(const Scene& scene, const CameraPath& path, int width, int height) {
+Field make_field(const Scene& scene, const RayEnds& ends, const CameraPath& path, int width, int height) {
     const Camera camera = path.reference();
-    const ScreenFrame frame{
-        camera.position, camera.right, camera.up, camera.forward,
-        screen_view(camera, width, height, scene.optics.aperture, far_of(scene), scene.time.fps.value_or(kDefaultFps))};
-    return Field(scene.media, scene.optics, frame, memory_limit());
+    const ScreenFrame frame{camera.position, camera.right, camera.up, camera.forward,
+                            screen_view(camera, width, height, scene.optics.aperture, far_distance(scene),
+                                        scene.time.fps.value_or(kDefaultFps))};
+    return Field(scene.media, scene.optics, frame, memory_limit(), bend_error(ends));
 }
 
 }  // namespace
 
-SceneAir::SceneAir(const Scene& scene, const RaySettings& settings)
+double far_distance(const Scene& scene) {
+    return scene.plate.far.value_or(scene.plate.distance.value_or(default_far(scene)));
+}
+
+SceneAir::SceneAir(const Scene& scene, const RaySettings& settings, const RayEnds& ends)
     : scene_(scene),
       settings_(settings),
       width_(scene.camera.resolution.value_or(kDefaultResolution)[0]),
       height_(scene.camera.resolution.value_or(kDefaultResolution)[1]),
-      far_(far_of(scene)),
+      far_(far_distance(scene)),
       path_(scene.camera, width_, height_),
-      field_(make_field(scene, path_, width_, height_)) {
+      field_(make_field(scene, ends, path_, width_, height_)) {
     if (scene.media.size() == 1)
         if (const auto* surface = std::get_if<SurfaceSpec>(&scene.media.front()))
             lone_ = std::make_shared<LoneSurface>(*surface, scene.optics);

@@ -12,6 +12,9 @@ namespace eikonal::reference {
 /// Steps of a ray. Those of samples/ take 600 at most, at a tolerance of 1e-6 px; a kilometre of a fine lattice 40000.
 inline constexpr int kStepBudget = 100000;
 
+/// Length of path after which a ray has met nothing [m], if the scene states no farther.
+inline constexpr double kFarthestSight = 1e6;
+
 /// How rays are followed.
 struct RaySettings {
     Integrator integrator = Integrator::Adaptive;
@@ -20,11 +23,21 @@ struct RaySettings {
     int step_budget = kStepBudget;  ///< of every ray
 };
 
+/// How far rays go, and what they may be off by as they end, which lattices are made fine enough for: all > 0.
+struct RayEnds {
+    double way = 1;                                              ///< [m]
+    double tolerance = std::numeric_limits<double>::infinity();  ///< [rad], seen from where they start, or [m]
+    bool seen_from_start = true;                                 ///< which of both
+};
+
+/// The distance at which the warp sees the scene's background [m].
+double far_distance(const Scene& scene);
+
 /// Immutable, thread-safe.
 class SceneAir {
   public:
     /// Keeps a reference to the scene. UserError: noise/field.h, camera.h, and media that the integrator cannot follow.
-    SceneAir(const Scene& scene, const RaySettings& settings);
+    SceneAir(const Scene& scene, const RaySettings& settings, const RayEnds& ends = {});
 
     FieldInstant at(int frame) const { return field_.at(time(frame)); }
     /// What each medium has been made into (Field::notes).
@@ -32,8 +45,6 @@ class SceneAir {
     /// Seconds since the scene's first frame.
     double time(int frame) const;
     TraceSettings trace_settings(const Camera& camera) const;
-    /// The scene's far distance, where the warp sees its background [m].
-    double far() const { return far_; }
 
     /// The first heated or cooled surface that the point does not lie above, and how far below it that is [m] >= 0:
     /// there is no air.
@@ -51,7 +62,7 @@ class SceneAir {
     const Scene& scene_;
     RaySettings settings_;
     int width_, height_;
-    double far_;
+    double far_;  ///< of the scene
     CameraPath path_;
     Field field_;
     std::shared_ptr<const LoneSurface> lone_;

@@ -502,7 +502,7 @@ TEST(Field, LatticesAreAsNearTheirSumAsStated) {
             error += glm::dot(off, off);
             power += glm::dot(truth, truth);
         }
-        const double stated = snapshot_slope_error(lattice, padding);
+        const double stated = snapshot_error(lattice, padding).slope;
         EXPECT_NEAR(std::sqrt(error / power), stated, 0.25 * stated + 3e-5) << padding;
     }
     const Field field = make({spec});
@@ -518,6 +518,72 @@ TEST(Field, LatticesAreAsNearTheirSumAsStated) {
     const std::uint64_t bare = lattice_bytes(spec, lattice.geometry());
     EXPECT_GT(Field({spec}, {}, {}, bare + 1000).interpolation_error(), kInterpolationError);
     EXPECT_EQ(make({blobs()}).interpolation_error(), 0);
+}
+
+// Straight rays through a spline and through one so fine that it is the sum itself, by the midpoint rule.
+TEST(Field, InterpolationMovesRaysByWhatIsStated) {
+    TurbulenceSpec spec = turbulence(TurbulenceForm::Lattice);
+    spec.lattice = {16, 16, 16, 1};
+    spec.period = {0.3, 0.3, 0.3, 1};
+    const LatticeField lattice(spec, choose_lattice(spec));
+    for (const bool falls : {false, true}) {
+        if (falls) spec.falloff = Falloff{.origin = {0, -1, 0}, .normal = {0, 1, 0}, .length = 2};
+        const LatticeField field(spec, lattice.geometry());
+        const auto exact = std::make_shared<const LatticeSnapshot>(field, 0, 12);
+        for (const bool oblique : {false, true})
+            for (const int padding : {1, 2, 4}) {
+                const auto spline = std::make_shared<const LatticeSnapshot>(field, 0, padding);
+                const OpticsSpec optics{.exaggeration = 3};
+                const FieldInstant f(optics, {{LatticePart{&field, spline, snapshot_error(field, padding).bend}, 2}});
+                Draw draw;
+                double shifts = 0, turns = 0, stated_shifts = 0, stated_turns = 0;
+                for (int i = 0; i < 300; ++i) {
+                    const double way = 2;
+                    const dvec3 from = draw.point(), d = oblique
+                                                             ? draw.direction()
+                                                             : glm::normalize(dvec3(0, 0, 1) + 0.1 * draw.direction());
+                    const int parts = 1000;
+                    dvec3 shift(0), turn(0);
+                    for (int j = 0; j < parts; ++j) {
+                        const double w = (j + 0.5) / parts * way;
+                        const dvec3 x = from + w * d,
+                                    off = 6.0 * (spline->jet(x).gradient - exact->jet(x).gradient) * (way / parts);
+                        const dvec3 across = off - glm::dot(off, d) * d;
+                        shift += (way - w) * across;
+                        turn += across;
+                    }
+                    shifts += glm::dot(shift, shift);
+                    turns += glm::dot(turn, turn);
+                    const FieldInstant::Interpolation stated = f.interpolation(from, from + way * d);
+                    stated_shifts += stated.shift * stated.shift;
+                    stated_turns += stated.turn * stated.turn;
+                }
+                const double shift = std::sqrt(shifts / stated_shifts), turn = std::sqrt(turns / stated_turns);
+                const double least = oblique ? 0.3 : 0.75, most = oblique ? 1.1 : 1.25;
+                EXPECT_TRUE(shift > least && shift < most) << padding << " " << oblique << " " << shift;
+                EXPECT_TRUE(turn > least && turn < most) << padding << " " << oblique << " " << turn;
+            }
+    }
+}
+
+TEST(Field, LatticesAreMadeAsFineAsRaysNeed) {
+    TurbulenceSpec spec = turbulence(TurbulenceForm::Lattice);
+    spec.lattice = {12, 12, 12, 1};
+    spec.period = {0.3, 0.3, 0.3, 1};
+    const dvec3 from(0, 0, 0), to(0, 0, 10);
+    for (const double exaggeration : {1.0, 100.0}) {
+        const auto turn = [&](double allowed) {
+            return Field({spec}, {.exaggeration = exaggeration}, {}, 1'000'000'000, allowed)
+                .at(0)
+                .interpolation(from, to)
+                .turn;
+        };
+        const double any = turn(std::numeric_limits<double>::infinity()), per_metre = any / std::sqrt(10.0);
+        EXPECT_EQ(turn(per_metre), any);
+        EXPECT_LE(turn(0.5 * per_metre), 0.5 * any);
+        EXPECT_GT(turn(1e-9 * per_metre), 0) << "as fine as it may be";
+    }
+    EXPECT_EQ(make({blobs()}).at(0).interpolation(from, to).turn, 0);
 }
 
 TEST(Field, SameBitsForAnyNumberOfThreads) {

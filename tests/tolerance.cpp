@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
             }
         const auto follow = [&](double tolerance) {
             TraceSettings trace = air.trace_settings(camera);
-            trace.sight = air.far();
+            trace.sight = far_distance(scene);
             trace.tolerance_px = tolerance;
             std::vector<BentHit> ends;
             for (const CameraRay& ray : rays)

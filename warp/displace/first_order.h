@@ -18,7 +18,7 @@
 
 namespace eikonal {
 
-/// Rms error of a lattice's force that its spline is made finer for, relative to the rms (snapshot_slope_error): twice
+/// Rms error of a lattice's force that its spline is made finer for, relative to the rms (snapshot_error): twice
 /// as fine as the lattice does even for power up to Nyquist. Lattices beyond 128³ keep to their own cells.
 inline constexpr double kFirstOrderSplineError = 0.015;
 /// Rms error against Eq. 7 along the lattice's trigonometric sum, relative to the rms, for any spectrum; hence the

@@ -50,7 +50,7 @@ constexpr double kPartOfNoiseCell = 0.75;
 int spline_padding(const LatticeField& field, double allowed) {
     int padding = 1;
     for (const int p : {2, 3, 4}) {
-        if (snapshot_slope_error(field, padding) <= allowed) break;
+        if (snapshot_error(field, padding).slope <= allowed) break;
         const auto finer = static_cast<std::size_t>(p);
         if (field.geometry().spatial_samples() * finer * finer * finer > kMostPadded) break;
         padding = p;
@@ -356,7 +356,7 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
     const double allowed = second_order() ? kSecondOrderSplineError : kFirstOrderSplineError;
     if (stepped) {
         layer.padding = layer.ray_padding = spline_padding(field, allowed);
-        if (const double error = snapshot_slope_error(field, layer.padding); error > allowed)
+        if (const double error = snapshot_error(field, layer.padding).slope; error > allowed)
             notes_.push_back(fmt::format(
                 "medium.{}: too large a lattice for a finer spline, whose force is off by {:.2g} of its rms", i,
                 error));
