@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "noise/dispatch.h"
+#include "noise/random.h"
 #include "warp/displace/layers.h"
 #include "warp/displace/stated_error.h"
 
@@ -39,6 +40,19 @@ constexpr int kMeetingHalvings = 30;
 constexpr double kOvershoot = 1.6;
 /// Least depth that layers are made for [m]: nearer ones move as at this one, which is not at all.
 constexpr double kLeastDepth = 1e-12;
+
+/// What the interpolation in lattices that a ray and its judge share may move the pixel by, drawn from what is expected
+/// [px].
+dvec2 drawn_interpolation(const FieldInstant& field, const Camera& camera, const SamplePixel& pixel, double depth) {
+    const StraightRay ray = straight_ray(camera, pixel.x + 0.5, pixel.y + 0.5);
+    const double shift = field.interpolation(ray.at(0), ray.at(depth)).shift;
+    if (!(shift > 0)) return {0, 0};
+    dvec2 gaussian;
+    RandomStream(0, "interpolation", static_cast<std::uint64_t>(pixel.x))
+        .gaussians(static_cast<std::uint64_t>(pixel.y), gaussian.x, gaussian.y);
+    const double scale = camera.projection == Projection::Perspective ? camera.f_px / depth : camera.f_px;
+    return std::sqrt(0.5) * shift * scale * gaussian;
+}
 
 }  // namespace
 
@@ -310,6 +324,8 @@ std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window
             const Shift shift = row.at(p.x, std::min(p.depth, row.end(p.x)));
             d = {shift.x, shift.y};
         }
+        const dvec2 off = drawn_interpolation(bent.field, s.camera, p, plane ? std::min(p.depth, s.farthest) : p.depth);
+        d = {d[0] + static_cast<float>(off.x), d[1] + static_cast<float>(off.y)};
         refuse_beyond(d.data(), 2);
         return Shift{d[0], d[1]};
     });

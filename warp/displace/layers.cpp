@@ -356,10 +356,13 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
     const double allowed = second_order() ? kSecondOrderSplineError : kFirstOrderSplineError;
     if (stepped) {
         layer.padding = layer.ray_padding = spline_padding(field, allowed);
-        if (const double error = snapshot_error(field, layer.padding).slope; error > allowed)
+        const SnapshotError error = snapshot_error(field, layer.padding);
+        if (error.slope > allowed)
             notes_.push_back(fmt::format(
                 "medium.{}: too large a lattice for a finer spline, whose force is off by {:.2g} of its rms", i,
-                error));
+                error.slope));
+        // an aperture of a cell and more averages it out
+        if (scene_.optics.aperture * layer.padding < std::min({cell.x, cell.y, cell.z})) layer.bend_error = error.bend;
     } else {
         const std::array paths{kNearestPadded * settings_.far, settings_.far};
         layer.padding =

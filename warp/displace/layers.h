@@ -43,6 +43,8 @@ struct MediumLayer {
     double constant = 0;  ///< c of `table`
     int padding = 1;      ///< of the splines of a lattice
     int ray_padding = 1;  ///< of the spline that rays of second-order go through
+    /// SnapshotError::bend, where map and rays go through the same spline.
+    double bend_error = 0;
 };
 
 /// A layer frozen at one time, or all of them as one.

@@ -120,7 +120,7 @@ FieldPart MediaLayers::part_of(const MediumLayer& layer, const LayerInstant& ins
     if (const auto* noise = std::get_if<GradientNoiseField>(&layer.field)) return {NoisePart{noise, t}};
     const auto& field = std::get<LatticeField>(layer.field);
     if (const auto* rays = std::get_if<FirstOrderInstant>(&instant))
-        return {LatticePart{&field, std::get<std::shared_ptr<const LatticeSnapshot>>(rays->medium)}};
+        return {LatticePart{&field, std::get<std::shared_ptr<const LatticeSnapshot>>(rays->medium), layer.bend_error}};
     Padding padding{layer.ray_padding, layer.ray_padding, layer.ray_padding};
     // Along an axis that every ray runs along, the spline's error averages out over the way.
     if (layer.model == Model::Spectral) padding[static_cast<std::size_t>(nearest_axis(reference_, 0).axis)] = 1;

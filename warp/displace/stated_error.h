@@ -13,6 +13,9 @@
 /// Where a ray ends on a heated surface and the depth buffer has a hole, it is followed through the plane, as the
 /// tracer follows it: a map ends it there.
 ///
+/// First and second order and their judge go through the same splines of a lattice; what those are off by is drawn for
+/// each sample from what is expected (FieldInstant::interpolation).
+///
 /// So the figure holds the model's own approximations: the order of the perturbation, tables, nodes, depths between
 /// layers and between pixels, and how media act on each other. It does not hold what no map can mend: that a plate does
 /// not show what its own foreground hides, and moves as one with it beside an edge. Compare it with the true error on
