@@ -335,6 +335,31 @@ TEST(Comparer, SecondOrderIsTheTruthAndStatedErrorsHold) {
     }
 }
 
+// Weak air: nothing is left of the second order, and what map and judge share, the lattice's spline, is what counts.
+TEST(Comparer, StatedErrorsHoldInWeakLattices) {
+    Scene scene = wall();
+    TurbulenceSpec air;
+    air.form = TurbulenceForm::Lattice;
+    air.cn2 = 1e-9;
+    air.outer_scale = 1;
+    air.inner_scale = 0.4;
+    air.lattice = {32, 32, 32, 2};
+    air.period = {8, 8, 8, 1};
+    scene.media = {air};
+    Comparer comparer(scene, one_sample());
+    comparer.add(1);
+    const Comparison c = comparer.result();
+    ASSERT_LT(c.rms, 0.1);
+    int orders = 0;
+    for (const ModelResult& m : c.models) {
+        if (m.name != "second-order" && !m.name.starts_with("first-order")) continue;
+        ++orders;
+        EXPECT_LT(*m.stated_p95, 2 * m.all.p95) << m.name;
+        EXPECT_GT(*m.stated_p95, 0.5 * m.all.p95) << m.name;
+    }
+    EXPECT_EQ(orders, 2);
+}
+
 TEST(Comparer, ABlobIsFollowedByTheDefaultAndNotByThePlate) {
     Scene scene = wall();
     scene.optics.exaggeration = 30;
