@@ -62,6 +62,11 @@ DepthPlane depth_plane(const RenderedFrame& plate, const PixelWindow& window, do
     return {window, std::move(metres)};
 }
 
+/// Where the warp has its background, as far as there is any [m].
+double background_depth(const DepthPlane& depth, double far, bool mirage) {
+    return mirage ? std::max<double>(far, depth.farthest()) : far;
+}
+
 /// One flag a pixel.
 std::vector<std::uint8_t> near_silhouettes(const RenderedFrame& plate, const RenderedFrame& truth,
                                            Projection projection) {
@@ -292,8 +297,11 @@ const Comparer::Frame& Comparer::add(int number, const std::function<void()>& ti
     Frame frame;
     frame.number = number;
     frame.plate = s.plate.render(number, tile_done);
+    const PixelWindow window{0, 0, frame.plate.width, frame.plate.height};
+    const bool mirage = has_mirage(s.scene);
+    const DepthPlane depth = depth_plane(frame.plate, window, s.far, mirage);
     auto start = Clock::now();
-    frame.truth = s.centers.render(number, tile_done);
+    frame.truth = s.centers.render(number, tile_done, background_depth(depth, s.far, mirage));
     s.tracer_seconds.push_back(seconds_since(start));
     start = Clock::now();
     RenderedFrame coloured = s.picture.render(number, tile_done);
@@ -301,9 +309,7 @@ const Comparer::Frame& Comparer::add(int number, const std::function<void()>& ti
     frame.truth.color = std::move(coloured.color);
     frame.truth.magnification = std::move(coloured.magnification);
 
-    const PixelWindow window{0, 0, frame.plate.width, frame.plate.height};
     const std::vector<std::uint8_t> edges = near_silhouettes(frame.plate, frame.truth, s.scene.camera.projection);
-    const DepthPlane depth = depth_plane(frame.plate, window, s.far, has_mirage(s.scene));
     const Frame* before = s.frames.empty() ? nullptr : &s.frames.back();
     frame.models.resize(s.contenders.size());
     for (std::size_t m = 0; m < s.contenders.size(); ++m) {

@@ -135,7 +135,8 @@ std::vector<Fact> facts(const Comparison& c) {
         {"tracer's time", fmt::format("{} ms a frame for the picture, {} ms for one ray a pixel without colour",
                                       readable(1e3 * c.picture_seconds), readable(1e3 * c.tracer_seconds))}};
     if (c.background > 0)
-        list.push_back({"background", fmt::format("{} of the pixels; at {} m to the warp, infinitely far to the tracer",
+        list.push_back({"background", fmt::format("{} of the pixels; {} m away to the warp and in the true "
+                                                  "displacement, infinitely far in the true picture",
                                                   percent(c.background), readable(c.far))});
     if (c.without_index > 0) list.push_back({"rays to n <= 0", percent(c.without_index)});
     return list;

@@ -74,6 +74,7 @@ struct Renderer::Air {
     FieldInstant field;
     TraceSettings trace;
     std::optional<Shadowgraph> sunlight;
+    std::optional<double> background;
 };
 
 std::size_t RenderedFrame::trapped() const {
@@ -178,17 +179,18 @@ void Renderer::check_camera(int frame) const {
 
 std::optional<Renderer::Air> Renderer::air_at(int frame, const Camera& camera) const {
     if (settings_.straight) return std::nullopt;
-    Air air{air_->at(frame), air_->trace_settings(camera), {}};
+    Air air{air_->at(frame), air_->trace_settings(camera), {}, {}};
     if (air.trace.perspective) air.trace.start_at(air.field, camera.position);
     const double far = far_distance(scene_);
     air.trace.sight = air.trace.perspective ? air.trace.far : std::max(far, longest_way(camera, far));
     return air;
 }
 
-RenderedFrame Renderer::render(int frame, const FrameWatch& watch) const {
+RenderedFrame Renderer::render(int frame, const FrameWatch& watch, std::optional<double> background) const {
     RenderedFrame result = planes(width_, height_, settings_.colour);
     const Camera camera = path_.at(frame);
     std::optional<Air> air = air_at(frame, camera);
+    if (air) air->background = background;
     if (air && watch.probed) watch.probed(try_rays(camera, frame, &*air, {}));
     if (air && settings_.light_rays > 0 && scene_.light && settings_.colour)
         air->sunlight.emplace(scene_, geometry_, air->field, air->trace, settings_.light_rays, settings_.cancelled,
@@ -358,6 +360,10 @@ BentHit Renderer::center_bent(const Camera& camera, int x, int y, const Air& air
         into.id[i] = static_cast<float>(end.surface.object + 1);
         into.depth[i] = static_cast<float>(glm::dot(seen, camera.forward));
         into.length[i] = static_cast<float>(end.length);
+    } else if (perspective && air.background) {
+        TraceSettings up_to_it = air.trace;
+        up_to_it.far = *air.background * glm::length(ray.direction);
+        seen = trace(air.field, nullptr, ray.origin, direction, up_to_it).at.x - camera.position;
     } else if (perspective) {
         seen = end.at.p;
     }

@@ -7,7 +7,8 @@
 ///     length     of the ray's path to it [m]; infinity likewise                                   (bent rays, here and
 ///     below) u, v       pixel where straight rays show that same point, minus this pixel: out(p) = in(p + d), y down
 ///     [px].
-///                Background is infinitely far in perspective, at `far` in orthographic views
+///                Background is infinitely far in perspective, unless render() is told, at `far` in orthographic
+///                views
 ///     id         1 + index of the object seen, 0 for background; black: -1 for a ray that gets nowhere (kTrapTurn of
 ///                bent_ray.h), -2 for one that came to where n <= 0, -3 for one that its step budget ended
 ///     steps      of the integrator
@@ -94,9 +95,12 @@ class Renderer {
     /// Reads meshes and textures, and makes the media, once for all frames.
     Renderer(const Scene& scene, const RenderSettings& settings);
 
-    RenderedFrame render(int frame, const FrameWatch& watch) const;
-    RenderedFrame render(int frame, const std::function<void()>& tile_done = {}) const {
-        return render(frame, FrameWatch{{}, {}, {}, tile_done});
+    /// background: axial depth at which u and v of a perspective view see the background, as the warp does [m] > 0;
+    /// infinitely far if it is not given.
+    RenderedFrame render(int frame, const FrameWatch& watch, std::optional<double> background = {}) const;
+    RenderedFrame render(int frame, const std::function<void()>& tile_done = {},
+                         std::optional<double> background = {}) const {
+        return render(frame, FrameWatch{{}, {}, {}, tile_done}, background);
     }
     int tile_count() const;
     Probe probe(int frame, const ProbeLimits& limits) const;
