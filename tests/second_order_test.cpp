@@ -229,19 +229,35 @@ TEST(ChooseModel, TakesTheCheapestWithinTheTolerance) {
     const Scene scene = lattice_scene(true);
     const DisplacerSettings settings = settings_for(2);
     const GainOf one = [](const Displacer&) { return 1.0; };
-    const ModelChoice loose = choose_model(scene, settings, 100, true, one);
+    const ModelChoice loose = choose_model(scene, settings, 100, {settings.far}, one);
     EXPECT_EQ(loose.model, Model::Table);
     EXPECT_TRUE(loose.within);
     EXPECT_EQ(loose.tried.size(), 1U);
-    const ModelChoice tight = choose_model(scene, settings, 0.5 * loose.p95, true, one);
+    const ModelChoice tight = choose_model(scene, settings, 0.5 * loose.p95, {settings.far}, one);
     EXPECT_GT(tight.model, Model::Table);
     EXPECT_TRUE(tight.within);
     EXPECT_LE(tight.p95, 0.5 * loose.p95);
-    const ModelChoice none = choose_model(scene, settings, 1e-12, true, one);
+    const ModelChoice none = choose_model(scene, settings, 1e-12, {settings.far}, one);
     EXPECT_FALSE(none.within);
     EXPECT_EQ(none.tried.size(), kModelNames.size());
     for (const TriedModel& tried : none.tried)
         EXPECT_TRUE(!tried.refusal.empty() || none.p95 <= tried.p95) << tried.p95;
+}
+
+// The depth that all frames share is what the choice is made for.
+TEST(ChooseModel, KnowsTheDepthOfTheShot) {
+    const Scene scene = screen_scene(4e-13);
+    const DisplacerSettings settings = settings_for(5000);
+    const GainOf one = [](const Displacer&) { return 1.0; };
+    const auto p95 = [&](const ShotDepth& depth) { return choose_model(scene, settings, 100, depth, one).p95; };
+    const double far = p95({}), near = p95({2000.0});
+    EXPECT_LT(near, 0.7 * far);
+    const DepthPlane flat(kWindow, std::vector<float>(kWindow.area(), 2000));
+    EXPECT_NEAR(p95({flat}), near, 0.2 * near);
+    std::vector<float> metres(kWindow.area(), 2000);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = kWidth / 2; x < kWidth; ++x) metres[static_cast<std::size_t>(y * kWidth + x)] = 5000;
+    EXPECT_GT(p95({DepthPlane(kWindow, metres)}), 1.2 * near) << "half of it is far";
 }
 
 // A model's stated figure is what second-order, node by node, says of the whole map.
@@ -275,8 +291,8 @@ TEST(StatedError, SayThatALoneSurfaceIsExact) {
         const std::vector<float> uv = map_of(scene, settings_for(5000), std::nullopt, 5000, &stated);
         EXPECT_GT(rms(uv), 30);
         EXPECT_LT(stated.p95, 2e-5 * rms(uv));
-        const ModelChoice choice =
-            choose_model(scene, settings_for(5000), 0.01, true, [](const Displacer&) { return 1.0; });
+        const ModelChoice choice = choose_model(scene, settings_for(5000), 0.01, {settings_for(5000).far},
+                                                [](const Displacer&) { return 1.0; });
         EXPECT_TRUE(choice.exact && choice.within) << choice.p95;
     }
 }
@@ -364,13 +380,13 @@ TEST(MediaLayers, LeaveOutBlobsAside) {
 TEST(ChooseModel, KeepsAMargin) {
     const Scene scene = blob_scene(300);
     const auto one = [](const Displacer&) { return 1.0; };
-    const ModelChoice loose = choose_model(scene, settings_for(40), 100, true, one);
+    const ModelChoice loose = choose_model(scene, settings_for(40), 100, {settings_for(40).far}, one);
     EXPECT_EQ(loose.model, Model::FirstOrder);
     const double sure = 1.001 * kChoiceMargin * loose.p95, tight = 0.999 * kChoiceMargin * loose.p95;
-    EXPECT_EQ(choose_model(scene, settings_for(40), sure, true, one).model, Model::FirstOrder);
-    EXPECT_EQ(choose_model(scene, settings_for(40), tight, true, one).model, Model::SecondOrder);
+    EXPECT_EQ(choose_model(scene, settings_for(40), sure, {settings_for(40).far}, one).model, Model::FirstOrder);
+    EXPECT_EQ(choose_model(scene, settings_for(40), tight, {settings_for(40).far}, one).model, Model::SecondOrder);
     const auto better = [&](double tolerance, Model model) {
-        return sufficient_model(scene, settings_for(40), tolerance, true, one, model, loose.p95);
+        return sufficient_model(scene, settings_for(40), tolerance, {settings_for(40).far}, one, model, loose.p95);
     };
     EXPECT_EQ(better(0.9 * loose.p95, Model::FirstOrder), Model::SecondOrder);
     EXPECT_FALSE(better(1e-9, Model::FirstOrder));
@@ -380,7 +396,9 @@ TEST(ChooseModel, KeepsAMargin) {
 TEST(ChooseModel, RefusesWhatNoModelTakes) {
     Scene scene = view();
     scene.media = {ProfileSpec{}};
-    EXPECT_THROW(choose_model(scene, settings_for(10), 0.1, true, [](const Displacer&) { return 1.0; }), UserError);
+    EXPECT_THROW(
+        choose_model(scene, settings_for(10), 0.1, {settings_for(10).far}, [](const Displacer&) { return 1.0; }),
+        UserError);
 }
 
 }  // namespace

@@ -49,6 +49,8 @@ class DepthInput {
     /// The depth map's files; empty if there is none or it is a channel of INPUT.
     const std::optional<FilePattern>& files() const { return files_; }
     bool inside_input() const { return inside_input_; }
+    /// Whether every frame has the same depth, where the camera's focal length stays.
+    bool still() const { return constant_ || ground_ || (files_ && !files_->is_sequence()); }
     /// One line for --verbose.
     std::string description() const;
 

@@ -97,7 +97,7 @@ Shot::Shot(Scene scene, const SceneOptions& scene_options, const DepthArguments&
     settings_.negligible = strength.rms || strength.gain == 0 ? 0 : kNegligibleShift / std::abs(strength.gain);
     if (strength.model.automatic || (strength.tolerance && !strength.model.model)) {
         if (!tolerance_) tolerance_ = kDefaultTolerance;
-        choice_ = choose_model(scene_, settings_, *tolerance_, depth_.constant().has_value(), gain_of());
+        choice_ = choose_model(scene_, settings_, *tolerance_, shot_depth(), gain_of());
         displacer_ = std::move(choice_->displacer);
     } else {
         displacer_ = std::make_unique<Displacer>(scene_, settings_);
@@ -120,8 +120,20 @@ GainOf Shot::gain_of() const {
 std::optional<Model> Shot::sufficient_model(double p95) const {
     if (displacer_->models().empty()) return {};
     const Model model = choice_ ? choice_->model : strength_.model.model.value_or(Model::SecondOrder);
-    return eikonal::sufficient_model(scene_, settings_, *tolerance_, depth_.constant().has_value(), gain_of(), model,
-                                     p95);
+    return eikonal::sufficient_model(scene_, settings_, *tolerance_, shot_depth(), gain_of(), model, p95);
+}
+
+ShotDepth Shot::shot_depth() const {
+    if (const auto distance = depth_.constant()) return {*distance, meeting_};
+    if (!depth_.still()) return {{}, meeting_};
+    const int frame = scene_.time.first_frame;
+    const CameraPath path(scene_.camera, settings_.width, settings_.height, settings_.pixel_aspect, settings_.fov);
+    std::vector<Remark> told_later;
+    try {
+        return {depth_.plane(frame, nullptr, {}, display_, display_, path.at(frame), told_later), meeting_};
+    } catch (const FrameError&) {
+        return {{}, meeting_};  // what is wrong with the map is told of the first frame
+    }
 }
 
 double Shot::frame_bytes(double pixel_bytes) const {

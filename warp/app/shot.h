@@ -72,6 +72,7 @@ class Shot {
 
   private:
     GainOf gain_of() const;
+    ShotDepth shot_depth() const;
 
     Scene scene_;
     DepthInput depth_;

@@ -39,28 +39,48 @@ DepthPlane ground_before(const Camera& camera, const Scene& scene, const PixelWi
     return {window, std::move(metres)};
 }
 
+/// Depths that stand for a shot's: planes where there are any, else distances [m].
+struct ChoiceDepths {
+    const DepthPlane* plane = nullptr;
+    DepthMeeting meeting = DepthMeeting::March;
+    std::vector<double> distances;
+    bool over_ground = false;  ///< before the distances
+
+    ChoiceDepths(const Scene& scene, double far, const ShotDepth& depth) : meeting(depth.meeting), distances{far} {
+        if (!depth.shared) {
+            over_ground = has_mirage(scene);
+            if (!over_ground) distances = {far / 8, far / 4, far / 2, far};
+        } else if (const auto* distance = std::get_if<double>(&*depth.shared)) {
+            distances = {*distance};
+        } else {
+            plane = &std::get<DepthPlane>(*depth.shared);
+        }
+    }
+};
+
 /// The largest p95 of the frames and distances.
 double sampled_p95(const Displacer& displacer, const Scene& scene, const DisplacerSettings& settings,
-                   const std::vector<double>& distances, bool over_ground, double gain) {
+                   const ChoiceDepths& depths, double gain) {
     double worst = 0;
     std::vector<float> uv(2 * static_cast<std::size_t>(settings.width));
     for (const double frame : choice_frames(scene, settings)) {
-        for (const double distance : distances) {
-            std::optional<DepthPlane> plane;
-            DepthSource depth = distance;
-            if (over_ground) {
+        for (const double distance : depths.distances) {
+            const DepthPlane* plane = depths.plane;
+            std::optional<DepthPlane> ground;
+            if (depths.over_ground) {
                 const PixelWindow picture{0, 0, settings.width, settings.height};
-                depth = &plane.emplace(ground_before(displacer.camera(frame), scene, picture, distance));
+                plane = &ground.emplace(ground_before(displacer.camera(frame), scene, picture, distance));
             }
-            const Displacer::Instant instant =
-                displacer.at(frame, plane ? double{plane->nearest()} : distances.front(), distances.back(), gain);
-            const DepthMeeting meeting = plane ? DepthMeeting::March : DepthMeeting::Own;
+            const double nearest = plane ? double{plane->nearest()} : depths.distances.front();
+            const double farthest = plane ? double{plane->farthest()} : depths.distances.back();
+            const Displacer::Instant instant = displacer.at(frame, nearest, farthest, gain);
+            const DepthSource depth = plane ? DepthSource(plane) : DepthSource(distance);
             std::vector<double> errors;
             for (int r = 0; r < kChoiceRows; ++r) {
                 const PixelWindow row{0, (2 * r + 1) * settings.height / (2 * kChoiceRows), settings.width, 1};
-                instant.map(row, depth, meeting, uv.data());
+                instant.map(row, depth, depths.meeting, uv.data());
                 const std::vector<double> some =
-                    instant.sampled_errors(row, depth, meeting, uv.data(), kChoiceSamples / kChoiceRows);
+                    instant.sampled_errors(row, depth, depths.meeting, uv.data(), kChoiceSamples / kChoiceRows);
                 errors.insert(errors.end(), some.begin(), some.end());
             }
             worst = std::max(worst, statistics_of(std::move(errors)).p95);
@@ -69,18 +89,12 @@ double sampled_p95(const Displacer& displacer, const Scene& scene, const Displac
     return worst;
 }
 
-std::vector<double> choice_distances(const DisplacerSettings& settings, bool one_distance, bool over_ground) {
-    const double far = settings.far;
-    return one_distance || over_ground ? std::vector{far} : std::vector{far / 8, far / 4, far / 2, far};
-}
-
 }  // namespace
 
-ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double tolerance, bool one_distance,
+ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double tolerance, const ShotDepth& depth,
                          const GainOf& gain_of) {
     settings.sample_errors = true;
-    const bool over_ground = has_mirage(scene) && !one_distance;
-    const std::vector<double> distances = choice_distances(settings, one_distance, over_ground);
+    const ChoiceDepths depths(scene, settings.far, depth);
     ModelChoice choice{};
     double rms = 0;
     for (const auto& [name, model] : kModelNames) {
@@ -96,7 +110,7 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
         const double gain = gain_of(*displacer);
         double p95 = 0;
         try {
-            p95 = sampled_p95(*displacer, scene, settings, distances, over_ground, gain);
+            p95 = sampled_p95(*displacer, scene, settings, depths, gain);
         } catch (const FrameError& refusal) {
             check_cancelled(settings.cancelled);
             choice.tried.push_back({model, refusal.what()});
@@ -125,10 +139,9 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
 }
 
 std::optional<Model> sufficient_model(const Scene& scene, DisplacerSettings settings, double tolerance,
-                                      bool one_distance, const GainOf& gain_of, Model model, double p95) {
+                                      const ShotDepth& depth, const GainOf& gain_of, Model model, double p95) {
     settings.sample_errors = true;
-    const bool over_ground = has_mirage(scene) && !one_distance;
-    const std::vector<double> distances = choice_distances(settings, one_distance, over_ground);
+    const ChoiceDepths depths(scene, settings.far, depth);
     double own = 0;
     for (const auto& [name, other] : kModelNames) {
         if (other < model) continue;
@@ -136,7 +149,7 @@ std::optional<Model> sufficient_model(const Scene& scene, DisplacerSettings sett
         try {
             const Displacer displacer(scene, settings);
             if (displacer.models().empty()) return {};
-            const double sampled = sampled_p95(displacer, scene, settings, distances, over_ground, gain_of(displacer));
+            const double sampled = sampled_p95(displacer, scene, settings, depths, gain_of(displacer));
             if (other == model)
                 own = sampled;
             else if (std::isfinite(sampled) && p95 * sampled <= tolerance * own)
