@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "noise/bessel.h"
 #include "noise/error.h"
 #include "noise/portable_math.h"
 
@@ -52,6 +53,28 @@ void ScreenSnapshot::add_values(const Columns& columns, double y, float weight, 
     for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i]->add_row_values(columns[i], y - drift_y_, weight, values);
 }
 
+namespace {
+
+/// Variance of ∂ψ/∂x [rad²] beyond the Nyquist wavenumber of a screen, as the circle around the origin that has the
+/// area of its lattice's square: 2π²δ ∫ k³Φ jinc²(kA/2) dk.
+double lost_gradient_variance(const TurbulenceSpec& spec, const ScreenGeometry& s, const Spectrum& spectrum) {
+    if (spec.spectrum == SpectrumKind::Paper) return 0;
+    constexpr double kBeyondInnerScale = 4;
+    constexpr int kSteps = 256;
+    const double lowest = std::sqrt(4 * portable::kPi * (s.nx / s.Lx) * (s.ny / s.Ly));
+    const double highest = kBeyondInnerScale * kInnerScaleConstant / spec.inner_scale;
+    if (!(highest > lowest)) return 0;
+    const double ratio = portable::pow(highest / lowest, 1.0 / kSteps);
+    double sum = 0, k = lowest * std::sqrt(ratio);
+    for (int i = 0; i < kSteps; ++i, k *= ratio) {
+        const double filter = s.aperture > 0 ? jinc(0.5 * s.aperture * k) : 1;
+        sum += k * k * k * k * spectrum(k * k) * filter * filter;
+    }
+    return 2 * portable::kPi * portable::kPi * s.thickness * sum * portable::log(ratio);
+}
+
+}  // namespace
+
 ScreenField::ScreenField(const TurbulenceSpec& spec, std::vector<ScreenGeometry> screens, const dvec3& e1,
                          const dvec3& e2)
     : screens_(std::move(screens)), velocity_x_(glm::dot(spec.velocity, e1)), velocity_y_(glm::dot(spec.velocity, e2)) {
@@ -68,6 +91,7 @@ ScreenField::ScreenField(const TurbulenceSpec& spec, std::vector<ScreenGeometry>
         std::vector<ScreenBand>& bands = bands_.emplace_back();
         for (const BandGeometry& g : screen_bands(spec, screens_[m]))
             bands.emplace_back(spec, spectrum, g, m * kBandsPerScreen + bands.size());
+        lost_.push_back(lost_gradient_variance(spec, s, spectrum));
     }
 }
 
@@ -105,6 +129,12 @@ double ScreenField::lever(std::size_t screen, double D) const {
 double ScreenField::displacement_angle_variance(double D) const {
     double sum = 0;
     for (std::size_t m = 0; m < screens_.size(); ++m) sum += lever(m, D) * lever(m, D) * gradient_variance(m);
+    return sum;
+}
+
+double ScreenField::lost_angle_variance(double D) const {
+    double sum = 0;
+    for (std::size_t m = 0; m < screens_.size(); ++m) sum += lever(m, D) * lever(m, D) * lost_[m];
     return sum;
 }
 

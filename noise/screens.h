@@ -63,6 +63,9 @@ class ScreenField {
     /// Σ (lever_m(D)/D)² var_m, the lever as slab_lever gives it: the angle that an object at D seems displaced by.
     /// Continuum for a point aperture and large L0: 1.093 Cn² D l0^(-1/3).
     double displacement_angle_variance(double D) const;
+    /// The same of the eddies that are too fine for the screens' lattices, whose cells are no finer than a pixel. (The
+    /// paper's spectrum ends with its lattice.)
+    double lost_angle_variance(double D) const;
     /// Σ var_m: angle of arrival of parallel rays. Continuum: 3.28 Cn² L l0^(-1/3).
     double arrival_angle_variance() const;
     /// Variance of ∂/∂x of the map's displacement at D: Σ (lever/D)² s² <(∂²ψ/∂x²)²> with s = w seen in perspective,
@@ -76,6 +79,7 @@ class ScreenField {
 
     std::vector<ScreenGeometry> screens_;
     std::vector<std::vector<ScreenBand>> bands_;
+    std::vector<double> lost_;  ///< gradient_variance that a screen's lattices leave out
     double velocity_x_, velocity_y_;
 };
 

@@ -219,6 +219,27 @@ TEST(Screens, DiscreteExpectationIsTheContinuum) {
             }
 }
 
+// What cells of any size hold and what they leave out is the continuum.
+TEST(Screens, WhatCellsLeaveOutIsKnown) {
+    for (const double aperture : {0.0, 0.05})
+        for (const double pixel : {1e-3, 5e-3, 0.02, 0.1}) {
+            TurbulenceSpec spec;
+            spec.inner_scale = 0.01;
+            spec.outer_scale = 1;
+            const ScreenView view{false, 10, 1, 1, pixel, aperture, 24};
+            const std::vector<ScreenGeometry> screens = layout_screens(spec, view);
+            const ScreenField field(spec, screens, {1, 0, 0}, {0, 1, 0});
+            double all = 0;
+            for (const ScreenGeometry& s : screens) {
+                const double lever = slab_lever(s.w - 0.5 * s.thickness, s.w + 0.5 * s.thickness, 10).length / 10;
+                all += lever * lever * continuum_slope_variance(spec, s.thickness, s.aperture);
+            }
+            const double kept = field.displacement_angle_variance(10), lost = field.lost_angle_variance(10);
+            EXPECT_NEAR((kept + lost) / all, 1, 0.03) << aperture << ' ' << pixel;
+            if (aperture == 0 && pixel > 0.01) EXPECT_GT(lost, 0.3 * all) << pixel;
+        }
+}
+
 TEST(Screens, FocusingVarianceIsTheContinuum) {
     TurbulenceSpec spec;
     spec.inner_scale = 0.01;

@@ -42,6 +42,8 @@ constexpr int kFewestRmsRays = 32;
 constexpr std::uint64_t kBlobPairs = 96;
 /// Samples of the largest spline that is made finer than its lattice.
 constexpr std::size_t kMostPadded = 256 * 256 * 256;
+/// Thin screens that move what they should by less than this part of it are worth a note.
+constexpr double kNoticedPart = 0.97;
 /// A step in gradient noise is half an inner scale, and at most this part of the finest octave's cell.
 constexpr double kPartOfNoiseCell = 0.75;
 
@@ -231,6 +233,14 @@ void MediaLayers::add_screens(std::size_t i, const TurbulenceSpec& spec) {
     keep({i, own(Model::Screens), ScreenField(spec, std::move(geometry), reference_.right, reference_.up), {}, 0},
          std::move(note));
     if (layers_.size() == before) return;
+    const auto& screens = std::get<ScreenField>(layers_.back().field);
+    const double lost = screens.lost_angle_variance(settings_.far),
+                 kept = screens.displacement_angle_variance(settings_.far);
+    if (const double part = std::sqrt(kept / (kept + lost)); part < kNoticedPart)
+        notes_.push_back(
+            fmt::format("medium.{}: eddies finer than a pixel are left out; what is left displaces objects at {:g} m "
+                        "by {:.2g} of what all would: a larger picture, or a longer lens, shows more",
+                        i, settings_.far, part));
     if (glm::dot(spec.velocity, reference_.forward) != 0)
         notes_.push_back(
             fmt::format("medium.{}: the wind's part along the view axis ({:.3g} m/s) does not move thin screens", i,
