@@ -152,7 +152,7 @@ std::string table_csv(const Comparison& c) {
         text += fmt::format("{},{}", model.name, model.is_default ? 1 : 0);
         for (const Column& column : list) {
             const auto value = column.value(c, model);
-            text += value ? fmt::format(",{:.6g}", *value) : ",";
+            text += value && std::isfinite(*value) ? fmt::format(",{:.6g}", *value) : ",";
         }
         text += '\n';
     }

@@ -1,6 +1,7 @@
 #include "warp/app/explain.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -93,8 +94,16 @@ void explain(const Shot& shot, const ExplainedRun& run) {
         frame, run.threads, run.threads == 1 ? "" : "s", probe.instant, probe.map, probe.resample,
         run.instants > 1 ? fmt::format(", {} times", run.instants) : "",
         frame * static_cast<double>(std::max<std::size_t>(run.frames.size(), 1)));
-    fmt::print("memory: about {:.0f} MB a frame, at most {} of them at a time\n", run.frame_bytes / 1e6,
-               run.threads + kFramesAhead);
+    const std::size_t at_a_time = static_cast<std::size_t>(run.threads + kFramesAhead),
+                      frames = run.frames.empty() ? at_a_time : std::min(run.frames.size(), at_a_time);
+    // what has been measured had neither the frame's picture nor the warped one
+    const double pictures = run.resample ? 2.0 * 4 * sizeof(float) * static_cast<double>(run.display.area()) : 0;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    fmt::print("memory: about {:.0f} MB for one frame", static_cast<double>(usage.ru_maxrss) / 1e3 + pictures / 1e6);
+    if (frames > 1)
+        fmt::print(", and at most {:.0f} MB for each of {} more under way with it", run.frame_bytes / 1e6, frames - 1);
+    fmt::print("\n");
 }
 
 }  // namespace eikonal
