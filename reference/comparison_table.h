@@ -35,8 +35,8 @@ struct Fact {
 };
 std::vector<Fact> facts(const Comparison& comparison);
 
-/// "model,default,KEY,…", a row for each model that applies; figures that there are none of are empty.
-/// Cells of what is unknown or infinite are empty.
+/// "model,default,KEY,…", a row for each model that applies; figures that there are none of, or that are
+/// infinite, are empty.
 std::string table_csv(const Comparison& comparison);
 /// Facts, a table for each group of columns, and the models that do not apply, with the reason.
 std::string table_text(const Comparison& comparison);

@@ -262,7 +262,7 @@ TEST(Table, HasARowForEachModelThatApplies) {
     EXPECT_TRUE(csv.starts_with("model,default,mean,p50,p95,p99,max,stated_p95,smooth_mean,")) << csv;
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
     EXPECT_NE(csv.find("\nscreens,1,0,0,0.125,"), std::string::npos) << csv;
-    EXPECT_NE(csv.find(",inf,"), std::string::npos);
+    EXPECT_EQ(csv.find("inf"), std::string::npos) << csv;
     EXPECT_TRUE(csv.ends_with(",100\n")) << csv;
     EXPECT_NE(table_text(c).find("table does not apply: no"), std::string::npos);
     EXPECT_EQ(readable(0.0123456), "0.0123");
