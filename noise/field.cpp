@@ -414,10 +414,11 @@ struct Field::State {
             return p > 1 ? kSnapshotBytes * static_cast<double>(geometry.spatial_samples()) * p * p * p : 0.0;
         };
         SnapshotError error = snapshot_error(field, padding);
+        const auto fine = [&] {
+            return error.slope <= kInterpolationError && error.bend * std::abs(laws.strength()) <= bend_error;
+        };
         for (const int p : {2, 3, 4, 5, 6, kFinestPadding}) {
-            const bool fine =
-                error.slope <= kInterpolationError && error.bend * std::abs(laws.strength()) <= bend_error;
-            if (fine || bytes(p) > static_cast<double>(memory)) break;
+            if (fine() || bytes(p) > static_cast<double>(memory)) break;
             padding = p;
             error = snapshot_error(field, p);
         }
@@ -425,8 +426,11 @@ struct Field::State {
         interpolation_error = std::max(interpolation_error, error.slope);
         media.emplace_back(LatticeMedium{std::move(field), padding, error.bend});
         return fmt::format(
-            "lattice {} x {} x {} x {}, its spline {} times finer, whose force is off by {:.2g} of its rms",
-            geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3], padding, error.slope);
+            "lattice {} x {} x {} x {}, its spline {} times finer, whose force is off by {:.2g} of its rms{}",
+            geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3], padding, error.slope,
+            fine()                      ? ""
+            : padding == kFinestPadding ? "; it is not made finer"
+                                        : "; finer there is no memory for");
     }
 
     std::string add(const SurfaceSpec& spec, const IndexLaw& law) {

@@ -45,9 +45,10 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
     const auto beyond = static_cast<std::size_t>(std::count_if(
         frame.error.begin(), frame.error.end(), [&](float e) { return e > kPessimism * o.render.rays.tolerance_px; }));
     if (o.render.rays.integrator == Integrator::Adaptive)
-        warn(beyond, fmt::format("may be off by more than the tolerance of {:g} px, by up to {:.2g} px as their rays "
-                                 "estimate it; a smaller --tolerance brings them nearer",
-                                 o.render.rays.tolerance_px,
+        warn(beyond, fmt::format("may be off by more than {:g} times the tolerance of {:g} px, by up to {:.2g} px as "
+                                 "their rays estimate it; a smaller --tolerance brings them nearer, as far as a "
+                                 "lattice's spline (--explain) can be finer",
+                                 kPessimism, o.render.rays.tolerance_px,
                                  frame.error.empty() ? 0 : *std::max_element(frame.error.begin(), frame.error.end())));
     if (!frame.magnification.empty())
         fmt::print(stderr, "frame {}: {} of {} pixels are folded (negative magnification)\n", number, frame.folded(),
