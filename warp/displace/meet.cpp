@@ -85,10 +85,11 @@ struct SkimmingRay : Ray {
     }
     /// d, or where the picture's samples there mix in something much nearer, a point beside it that is as deep and
     /// clear of it; the centre of the facet if there is none. Off the ground, only outlines across the way that the
-    /// mirage moves the picture matter: the others move along themselves.
+    /// mirage moves the picture matter: the others move along themselves. A ray that never comes down to the ground
+    /// does not look for any.
     Shift settled(Shift d) const {
         const auto [seen, stop, limit] = under(d);
-        if (!at_edge(d, limit)) return d;
+        if (!at_edge(d, limit) || (limit == seen && !ends_on_ground)) return d;
         const auto beside = [&](float wx, float wy) { return Shift{d.x + wx, d.y + wy}; };
         const auto alike = [&](Shift there) {
             const float z = under(there).seen;
@@ -116,24 +117,39 @@ struct SkimmingRay : Ray {
         return {static_cast<float>(whole(d.x + 0.5f)), static_cast<float>(whole(d.y + 0.5f))};
     }
     /// d, or where the ray passes over the ground for good but the picture's samples there mix in some that is much
-    /// nearer than what it sees, as at the horizon: the nearest point along its way over the screen, to either side,
-    /// that is clear of it.
+    /// nearer than what it sees, as at the horizon: the nearest point along its way over the screen, to either side, or
+    /// to any if it has none, that is as deep and clear of it. Only ground whose own pixel sees other things counts.
     Shift above_ground(Shift d) const {
-        const float length = std::sqrt(d.x * d.x + d.y * d.y);
-        if (ends_on_ground || !(length > 0)) return d;
-        const float limit = kEdgeRatio * under(d).seen;
+        if (ends_on_ground) return d;
+        const float seen = under(d).seen;
+        const bool on_ground = ground.is(x + whole(d.x + 0.5f), y + whole(d.y + 0.5f), seen);
+        const float limit = on_ground ? std::numeric_limits<float>::infinity() : kEdgeRatio * seen;
         const auto mixes_ground = [&](Shift there) {
             const int xi = x + whole(there.x), yi = y + whole(there.y);
-            for (int j = yi - 1; j <= yi + 2; ++j)
-                for (int i = xi - 1; i <= xi + 2; ++i)
-                    if (const float near = depth.at(i, j); near < limit && ground.is(i, j, near)) return true;
+            const int nx = there.x != std::floor(there.x) ? 2 : 1, ny = there.y != std::floor(there.y) ? 2 : 1;
+            for (int j = yi - 1; j <= yi + ny; ++j)
+                for (int i = xi - 1; i <= xi + nx; ++i)
+                    if (const float near = depth.at(i, j);
+                        near < limit && ground.is(i, j, near) && ground.mirrors(i, j))
+                        return true;
             return false;
         };
         if (!mixes_ground(d)) return d;
+        const float length = std::sqrt(d.x * d.x + d.y * d.y);
+        std::array<Shift, 8> ways{{{0, -1}, {0, 1}, {-1, 0}, {1, 0}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+        std::size_t count = ways.size();
+        if (length > 0) {
+            ways[0] = {d.x / length, d.y / length};
+            ways[1] = {-ways[0].x, -ways[0].y};
+            count = 2;
+        }
         for (float way = 0.25f; way <= kAboveGround; way += 0.25f)
-            for (const float side : {way, -way})
-                if (const Shift there{d.x + side / length * d.x, d.y + side / length * d.y}; !mixes_ground(there))
-                    return there;
+            for (std::size_t k = 0; k < count; ++k) {
+                const Shift there{d.x + way * ways[k].x, d.y + way * ways[k].y};
+                const float z = under(there).seen;
+                const bool alike = on_ground || (z >= kEdgeRatio * seen && kEdgeRatio * z <= seen);
+                if (alike && !mixes_ground(there)) return there;
+            }
         return d;
     }
     /// The last point d before the ray passes behind an object at `blocked`, moved back from the object's outline until
@@ -471,6 +487,8 @@ void MeetTile::row(BandRows& bands, int y, float* uv) const {
             switch (how_) {
                 case DepthMeeting::March:
                     d = march(ray, range);
+                    if (ground_.any() && std::isfinite(depth_.front(x + whole(d.x), y + whole(d.y))))
+                        d = SkimmingRay{ray, ground_, range.farthest, false}.above_ground(d);
                     break;
                 case DepthMeeting::FixedPoint:
                     d = fixed_point(ray);

@@ -23,8 +23,9 @@
 /// Such a ray may pass behind an object, where the plate does not show it, and comes out again or ends on what is
 /// hidden: the ground beside it that is as deep stands in, or what lies behind the object where it does not end on
 /// ground, as far as kFarthestAside. Where there is none, it is the last visible point before the object's outline, and
-/// stands back from its antialiased rim, by kFarthestBack at most. One that passes over the ground for good stands clear
-/// of the horizon, whose pixels mix in some, by kAboveGround at most.
+/// stands back from its antialiased rim, by kFarthestBack at most. One that passes over the ground for good stands
+/// clear of the horizon and of an object's foot, whose pixels mix in some, by kAboveGround at most; so does a pixel
+/// beside them that no mirage moves, since what it mixes in is not there any more.
 #pragma once
 
 #include <algorithm>
@@ -99,6 +100,14 @@ class MirageGround {
     bool is(int x, int y, double z) const {
         for (const Mirage& mirage : mirages_)
             if (mirage.on_ground(x, y, z)) return true;
+        return false;
+    }
+    bool any() const { return !mirages_.empty(); }
+    /// Whether pixel (x, y) sees no ground: a mirage bends its ray up before.
+    bool mirrors(int x, int y) const {
+        Mirage::PixelRay pixel;
+        for (const Mirage& mirage : mirages_)
+            if (mirage.ray(x, y, pixel) && std::isinf(pixel.end)) return true;
         return false;
     }
     /// Whether no object nearer than z, or at z, is in the pixels from (x0, y0) to (x1, y1) or their blocks.
