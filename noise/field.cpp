@@ -35,8 +35,9 @@ constexpr double kStride = 2, kLatticeStride = 3;
 constexpr double kStraightest = 0.5;
 /// Of the whole way: what a straight walk over the ends of slabs may lose to rounding.
 constexpr double kWalked = 1e-12;
-/// Bytes a node of a snapshot while it is made: its spectrum, samples and coefficients.
-constexpr double kSnapshotBytes = 12;
+/// Bytes a node of a snapshot while it is made: its spectrum, samples and coefficients; and the most that a spline is
+/// made finer for, whatever the machine has, so that every machine makes the same.
+constexpr double kSnapshotBytes = 12, kMostSplineBytes = 3.3e9;
 
 // Every medium at an instant has sample(x) and jet(x), without exaggeration, and longest_step(x, d), clear_way(x, d)
 // and way_to_edge(x, d) as FieldInstant's. (Thin screens have force and force_jet instead.)
@@ -418,19 +419,23 @@ struct Field::State {
             return error.slope <= kInterpolationError && error.bend * std::abs(laws.strength()) <= bend_error;
         };
         for (const int p : {2, 3, 4, 5, 6, kFinestPadding}) {
-            if (fine() || bytes(p) > static_cast<double>(memory)) break;
+            if (fine() || bytes(p) > kMostSplineBytes) break;
             padding = p;
             error = snapshot_error(field, p);
         }
+        if (bytes(padding) > static_cast<double>(memory))
+            throw UserError(
+                fmt::format("lattice {} x {} x {}: its spline, {} times finer, needs {:.1f} GB of memory and {:.1f} GB "
+                            "are free for it; choose a smaller lattice",
+                            geometry.size[0], geometry.size[1], geometry.size[2], padding, bytes(padding) / 1e9,
+                            static_cast<double>(memory) / 1e9));
         take(static_cast<std::uint64_t>(bytes(padding)));
         interpolation_error = std::max(interpolation_error, error.slope);
         media.emplace_back(LatticeMedium{std::move(field), padding, error.bend});
         return fmt::format(
             "lattice {} x {} x {} x {}, its spline {} times finer, whose force is off by {:.2g} of its rms{}",
             geometry.size[0], geometry.size[1], geometry.size[2], geometry.size[3], padding, error.slope,
-            fine()                      ? ""
-            : padding == kFinestPadding ? "; it is not made finer"
-                                        : "; finer there is no memory for");
+            fine() ? "" : "; no finer one is made");
     }
 
     std::string add(const SurfaceSpec& spec, const IndexLaw& law) {

@@ -15,8 +15,8 @@
 /// (noise/screen_force.h). They have no index of their own: |dx/du|² = n² holds for every other medium only.
 ///
 /// Lattices are cubic splines through their trigonometric sum at the exact time, so F has continuous derivatives; what
-/// it is off the sum's F by is at most kInterpolationError, and bends rays by no more than the field's user asks, where
-/// memory and kFinestPadding permit (FieldInstant::interpolation). Media of no strength are left out. Where n <= 0
+/// it is off the sum's F by is at most kInterpolationError, and bends rays by no more than the field's user asks, up to
+/// kFinestPadding and 640³ nodes (FieldInstant::interpolation). Media of no strength are left out. Where n <= 0
 /// there is no force but the screens'.
 #pragma once
 

@@ -41,12 +41,13 @@ class Tracer {
         : field_(field),
           settings_(settings),
           tolerance_(std::max(settings.tolerance_px * settings.pixel, kFinestTolerance)),
+          adaptive_(settings.integrator == Integrator::Adaptive),
           bundle_(bundle),
           recorder_(recorder),
           geometry_(geometry),
           search_(geometry, chord_deviation(settings), settings.distance) {
         if (bundle) bundles_.emplace();
-        if (settings.lone && settings.integrator == Integrator::Adaptive) lone_ = settings.lone.get();
+        if (settings.lone && adaptive_) lone_ = settings.lone.get();
     }
 
     BentHit run(const dvec3& origin, const dvec3& direction);
@@ -76,6 +77,7 @@ class Tracer {
     double tolerance_;       ///< [rad or m]
     double longest_ = 0;     ///< way [m]
     double quiet_turn_ = 0;  ///< that does not matter [rad]
+    bool adaptive_, bent_ = false;
     const LoneSurface* lone_ = nullptr;
     Bundle* bundle_;
     const StepRecorder& recorder_;
@@ -199,15 +201,15 @@ bool Tracer::go_straight(double way) {
 
 /// One step, as long as the field and its error allow; what ends the ray, if anything.
 std::optional<BentHit::End> Tracer::go_bent() {
-    const bool adaptive = settings_.integrator == Integrator::Adaptive;
+    bent_ = true;
     const double speed = glm::length(state_.p);
     const dvec3 d = state_.p / speed;
     const double feature =
-        adaptive ? field_.longest_stride(state_.x, d, quiet_turn_) : field_.longest_step(state_.x, d);
+        adaptive_ ? field_.longest_stride(state_.x, d, quiet_turn_) : field_.longest_step(state_.x, d);
     const double remaining = std::min(settings_.far - result_.length, (settings_.u_end - state_.u) * speed);
     double length = std::min(feature, remaining);
     if (settings_.step > 0) length = std::min(length, settings_.step * (speed / launch_speed_));
-    if (adaptive) length = std::min(length, proposed_);
+    if (adaptive_) length = std::min(length, proposed_);
     const double place = same_place(), edge = field_.way_to_edge(state_.x, d);
     const bool cut = edge <= length + place;
     if (cut) {
@@ -230,7 +232,7 @@ std::optional<BentHit::End> Tracer::go_bent() {
         if (++result_.steps > settings_.most_steps()) return End::Unfinished;
         step = bent_step(settings_.integrator, field_, state_, force_, h);
         off = error(step, speed);
-        if (!adaptive) break;
+        if (!adaptive_) break;
         // The error of order 4 goes with h^5.
         const double allowed = tolerance_ / (lone_ ? kStepShareOverSurface : kStepShare);
         double factor = kMostGrowth;
@@ -248,7 +250,7 @@ std::optional<BentHit::End> Tracer::go_bent() {
     if (accept(step)) return End::Surface;
     force_ = step.force_to;
     // A ray has |p| = n, so one that is followed well slows down before it comes to where there is no index.
-    if ((!adaptive || glm::length(p) < 0.5 * launch_speed_) && !(field_.speed(state_.x) > 0)) return End::NoIndex;
+    if ((!adaptive_ || glm::length(p) < 0.5 * launch_speed_) && !(field_.speed(state_.x) > 0)) return End::NoIndex;
     return {};
 }
 
@@ -287,6 +289,7 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
     if (*end != End::Surface)
         if (const auto met = search_.finish()) finish(*met);
     result_.steps = std::min(result_.steps, settings_.most_steps());
+    if (adaptive_ && (lone_ || bent_)) error_ += tolerance_ / kQuietShare;
     result_.error_px = std::min(error_ / settings_.pixel, std::numeric_limits<double>::max());
     result_.at = state_;
     return result_;

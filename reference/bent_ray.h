@@ -11,8 +11,9 @@
 /// for an orthographic one (|δx| + |δp|/|p| (end - s)) / pixel, where end is `sight` or the longest path that settings
 /// allow. BentHit::error_px is their sum over all steps: it is about the displacement's error where steps are few to a
 /// feature, pessimistic (that of order 4) where they are many, and knows nothing of chords and of a field that spreads
-/// rays apart. Against 1e-6 pixels the displacement's error stays below the tolerance (README, How fast). To it comes
-/// what interpolation in lattices does to 95 % of rays at most (FieldInstant::interpolation).
+/// rays apart. Against 1e-6 pixels the displacement's error stays below the tolerance (README, How fast). To it come,
+/// of adaptive, the part of the tolerance that does not matter (kQuietShare), and what interpolation in lattices does
+/// to 95 % of rays at most (FieldInstant::interpolation).
 ///
 /// Surfaces: surface_search.h; chords deviate from the curve by less than half of the tolerance.
 ///

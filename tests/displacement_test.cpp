@@ -319,6 +319,24 @@ TEST(Displacement, ExpectedRmsOfRareBlobs) {
     EXPECT_LT(displacer.expected_rms(6), 2.5 * std::sqrt(sum));
 }
 
+// Blobs of a few pixels, wherever they stand: no fixed set of pixels would meet them.
+TEST(Displacement, ExpectedRmsOfSmallBlobs) {
+    Scene scene;
+    scene.camera.position = {0, 0, 0};
+    scene.camera.look_at = {0, 0, -1};
+    scene.camera.horizontal_fov = 40;
+    scene.optics.exaggeration = 20;
+    for (const double sigma : {0.02, 0.05, 0.2})
+        for (const double side : {-1.2, 0.0, 0.7}) {
+            BlobsSpec blobs;
+            blobs.blobs = {{{side, 0.3 * side, -5}, sigma, 900}, {{side + 0.01, 0.3 * side, -5.2}, 0.7 * sigma, 700}};
+            scene.media = {blobs};
+            const Displacer displacer(scene, sized(640, 360, 6));
+            const double real = rms(map_of(displacer, 1, {0, 0, 640, 360}, 6));
+            EXPECT_NEAR(displacer.expected_rms(6) / real, 1, 0.25) << sigma << ' ' << side;
+        }
+}
+
 TEST(Displacement, ExpectedRmsIsTheRealisedOne) {
     const Displacer displacer(long_view(0.01), sized(160, 90, 400));
     for (const double D : {400.0, 60.0}) {

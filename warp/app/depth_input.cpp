@@ -109,9 +109,11 @@ DepthInput::DepthInput(const DepthArguments& a, const Scene& scene) {
 std::string DepthInput::description() const {
     if (constant_) return fmt::format("everything at {:g} m along the axis", *constant_);
     if (ground_) return fmt::format("flat ground {:g} m below the camera, background at {:g} m", ground_->height, far_);
-    if (inside_input_) return fmt::format("channel '{}' of the input, background at {:g} m", options_.channel, far_);
-    return fmt::format("'{}'{}, background at {:g} m", files_->text().string(),
-                       options_.channel.empty() ? "" : fmt::format(" channel '{}'", options_.channel), far_);
+    const std::string background =
+        fmt::format("background at {:g} m{}", far_, mirage_ && !limited_ ? ", or where the farthest thing is" : "");
+    if (inside_input_) return fmt::format("channel '{}' of the input, {}", options_.channel, background);
+    return fmt::format("'{}'{}, {}", files_->text().string(),
+                       options_.channel.empty() ? "" : fmt::format(" channel '{}'", options_.channel), background);
 }
 
 PixelWindow seen_from(const PixelWindow& data, const PixelWindow& display) {

@@ -28,9 +28,9 @@ double gain_for(const Displacer& displacer, const StrengthOptions& strength, dou
     const double natural = displacer.expected_rms(far);
     if (natural == 0 && *strength.rms > 0)
         throw UserError(
-            fmt::format("--rms {:g}: the scene moves nothing that could be scaled to it; give a medium some strength "
-                        "(cn2), and its "
-                        "lattice, if it has one, 4 samples or more in x, y and z",
+            fmt::format("--rms {:g}: the scene moves nothing that could be scaled to it; give turbulence some strength "
+                        "(cn2), and its lattice, if it has one, 4 samples or more in x, y and z, or bring blobs into "
+                        "the view, before the plate",
                         *strength.rms));
     return natural > 0 ? strength.gain * *strength.rms / natural : 0;
 }
@@ -147,9 +147,9 @@ void Shot::tell(const std::vector<int>& frames, bool verbose) {
         for (std::string& line : flat_lattices(scene_)) warnings_.push_back(std::move(line));
     if (displacer_->mirages() && depth_.far_is_unstated() && depth_.far() < kDefaultSky)
         warnings_.push_back(fmt::format(
-            "the background, which a mirage mirrors, is taken to be only {:g} m away, for the other media's sake: "
+            "the background, which a mirage mirrors, is taken to be only {:g} m away, for the other media's sake{}: "
             "say with --far or plate.far how far it is",
-            depth_.far()));
+            depth_.far(), depth_.constant() ? "" : ", or where the farthest thing in the frame is"));
     if (choice_ && choice_->p95 > *tolerance_)
         warnings_.push_back(
             choice_->exact
@@ -271,6 +271,11 @@ Shot::Maps Shot::maps(int frame, const std::vector<double>& offsets, const Pictu
         }
         result.of_instants.push_back(std::move(map));
     }
+    if (displacer_->mirages() && !depth_.far_is_unstated() && farthest > static_cast<float>(depth_.far()))
+        remarks.push_back({"background_behind",
+                           fmt::format("depth reaches {:g} m, beyond {} {:g} m: the background, which the mirage "
+                                       "mirrors, is put there in this frame; say with a larger far where it is in all",
+                                       farthest, depth_.far_name(), depth_.far())});
     if (const std::vector<std::string> lines = displacer_->beyond_far(farthest); !lines.empty())
         remarks.push_back(
             {"depth_far", fmt::format("depth reaches {:g} m, beyond {} {:g} m; {}: say with --far how "

@@ -29,17 +29,8 @@ constexpr double kLeastAlignment = 0.866;
 constexpr double kDeeper = 10;
 /// A Gaussian field's largest value over a shot, in parts of its rms.
 constexpr double kLargestOverRms = 6;
-/// Blobs that the expected rms is taken over, and instants that have so many between them. Wind is dear.
-constexpr double kRmsBlobs = 600;
-constexpr int kFewestRmsInstants = 2, kMostRmsInstants = 64, kMostRmsWinds = 16;
-
 /// Steps of a first-order ray beyond which it is warned that frames take long.
 constexpr double kManySteps = 2000;
-/// Steps that all rays of an estimate take together, about, and the fewest rays that it is taken from.
-constexpr double kRmsSteps = 256e3;
-constexpr int kFewestRmsRays = 32;
-/// Pairs of pixels among blobs.
-constexpr std::uint64_t kBlobPairs = 96;
 /// Samples of the largest spline that is made finer than its lattice.
 constexpr std::size_t kMostPadded = 256 * 256 * 256;
 /// Thin screens that move what they should by less than this part of it are worth a note.
@@ -417,128 +408,6 @@ void MediaLayers::refuse_other_model() const {
         "--model {}: no medium of this scene suits it ({}); screens goes with form=\"screens\", the others with "
         "form=\"lattice\" (--set medium.0.form=lattice)",
         name_of(*settings_.model), have));
-}
-
-double MediaLayers::expected_variance(const MediumLayer& layer, double D) const {
-    const double pixels = perspective() ? reference_.f_px / D : reference_.f_px;  // of one metre of x1
-    const double strength2 = strength_ * strength_;
-    const double aspect2 = reference_.pixel_aspect * reference_.pixel_aspect;
-    if (const auto* screens = std::get_if<ScreenField>(&layer.field))
-        return strength2 * (1 + aspect2) * screens->displacement_angle_variance(D) * (pixels * D) * (pixels * D);
-    if (const auto* lattice = std::get_if<LatticeField>(&layer.field)) {
-        const PathRays rays = nearest_axis(reference_, scene_.optics.aperture);
-        const auto x1 = lattice->displacement_variance(rays.axis, D, rays.aperture);
-        return strength2 * 0.5 * (1 + aspect2) * (x1[0] + x1[1]) * pixels * pixels;
-    }
-    return sampled_variance(layer, D).shift;
-}
-
-namespace {
-
-/// d of a pixel for an object at D, and how it changes to the next one, to the right or below.
-struct PixelPair {
-    PixelWindow window;
-
-    PixelPair(int x, int y, bool across) : window{x, y, across ? 2 : 1, across ? 1 : 2} {}
-    struct Shifts {
-        Shift d;
-        double slope;
-    };
-    Shifts shifts(const std::vector<Band>& bands, double D) const {
-        BandRows row;
-        row.start(bands, window.y0);
-        const Shift d = row.at(window.x0, D);
-        if (window.height == 2) row.start(bands, window.y0 + 1);
-        const Shift next = row.at(window.x0 + window.width - 1, D);
-        return {d, window.width == 2 ? double{next.x} - d.x : double{next.y} - d.y};
-    }
-};
-
-}  // namespace
-
-int MediaLayers::rms_instants(const MediumLayer& layer, int rays) const {
-    const auto* cloud = std::get_if<BlobCloud>(&layer.field);
-    if (cloud == nullptr) return rays;
-    const auto& spec = std::get<BlobsSpec>(scene_.media[layer.medium]);
-    if (spec.sources.empty()) return 1;
-    const int most = spec.wind && spec.wind->rms > 0 ? kMostRmsWinds : kMostRmsInstants;
-    return static_cast<int>(std::clamp<double>(std::ceil(kRmsBlobs / cloud->most()), kFewestRmsInstants, most));
-}
-
-/// Over rays spread over the picture and their neighbours one pixel to the right or below, by turns, and over instants,
-/// the first of them t = 0: a shot begins there, and finds its wind made.
-MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& layer, double D) const {
-    const RandomStream stream(1, "expected rms");
-    const bool blobs = std::holds_alternative<BlobCloud>(layer.field);
-    const double steps = blobs ? 1 : D * glm::length(reference_.forward / layer.cell);
-    const int rays = std::clamp(static_cast<int>(std::min(kRmsSteps / steps, 1e6)), kFewestRmsRays, kRmsRays);
-    const int instants = rms_instants(layer, rays);
-    std::optional<LayerInstant> instant;
-    SampledVariance sum;
-    for (int i = 0; i < rays; ++i) {
-        check_cancelled(settings_.cancelled);
-        // points of the plane that keep apart, however many there are
-        const auto along = [i](double step, int size) {
-            const double place = step * (i + 1);
-            return static_cast<int>((place - std::floor(place)) * size);
-        };
-        const int x = along(0.7548776662466927, settings_.width), y = along(0.5698402909980532, settings_.height);
-        if (const int k = i * instants / rays; i == 0 || k != (i - 1) * instants / rays)
-            instant = this->instant(layer, reference_, k == 0 ? 0 : 1e3 * stream.uniform(static_cast<std::uint64_t>(k)),
-                                    D, D, 1);
-        const PixelPair pair(x, y, i % 2 == 0);
-        std::vector<Band> bands;
-        if (blobs) {
-            bands.push_back(std::get<BlobBends>(*instant).every_pixel(pair.window, D));
-        } else {
-            bands = blank_bands(*instant, reference_, D, D);
-            bands.front().spacing = 1;
-            bands.front().cover(pair.window);
-            std::get<FirstOrderInstant>(*instant).fill(bands.front(), reference_);
-        }
-        const auto [d, slope] = pair.shifts(bands, D);
-        sum.shift += (double{d.x} * d.x + double{d.y} * d.y) / rays;
-        sum.slope += slope * slope / rays;
-    }
-    return sum;
-}
-
-double MediaLayers::blob_focusing(const MediumLayer& layer, double D) const {
-    const LayerInstant instant = this->instant(layer, reference_, 0, D, D, 1);
-    const auto& bends = std::get<BlobBends>(instant);
-    const std::vector<SeenBlob>& blobs = bends.seen();
-    if (blobs.empty()) return 0;
-    const RandomStream stream(1, "focusing of blobs");
-    const PixelWindow picture{0, 0, settings_.width, settings_.height};
-    double sum = 0;
-    int pairs = 0;
-    for (std::uint64_t i = 0; i < kBlobPairs; ++i) {
-        check_cancelled(settings_.cancelled);
-        const SeenBlob& blob =
-            blobs[static_cast<std::size_t>(stream.uniform(4 * i) * static_cast<double>(blobs.size()))];
-        const double scale = perspective() ? 1 / std::max(blob.forward, blob.sigma) : 1;
-        const auto aside = [&](std::uint64_t c) { return (3 * stream.uniform(4 * i + c) - 1.5) * blob.sigma; };
-        const dvec2 place = reference_.pixel(scale * dvec2(blob.right + aside(1), blob.up + aside(2)));
-        if (!(place.x >= 0 && place.x < picture.width && place.y >= 0 && place.y < picture.height)) continue;
-        const PixelPair pair(static_cast<int>(place.x), static_cast<int>(place.y), i % 2 == 0);
-        const double slope = pair.shifts({bends.every_pixel(pair.window, D)}, D).slope;
-        sum += slope * slope;
-        ++pairs;
-    }
-    return pairs > 0 ? sum / pairs : 0;
-}
-
-double MediaLayers::focusing_variance(const MediumLayer& layer, double D) const {
-    if (std::holds_alternative<BlobCloud>(layer.field)) return blob_focusing(layer, D);
-    const double strength2 = strength_ * strength_;
-    if (const auto* screens = std::get_if<ScreenField>(&layer.field))
-        return strength2 * screens->focusing_variance(D, perspective());
-    if (const auto* lattice = std::get_if<LatticeField>(&layer.field)) {
-        const PathRays rays = nearest_axis(reference_, scene_.optics.aperture);
-        const auto slope = lattice->focusing_variance(rays.axis, D, perspective(), rays.aperture);
-        return strength2 * 0.5 * (slope[0] + slope[1]);
-    }
-    return sampled_variance(layer, D).slope;
 }
 
 }  // namespace eikonal
