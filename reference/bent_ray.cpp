@@ -289,7 +289,7 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
     if (*end != End::Surface)
         if (const auto met = search_.finish()) finish(*met);
     result_.steps = std::min(result_.steps, settings_.most_steps());
-    if (adaptive_ && (lone_ || bent_)) error_ += tolerance_ / kQuietShare;
+    if (adaptive_ && (lone_ || bent_)) error_ += tolerance_ / (lone_ ? kQuietShare : kUnseenShare);
     result_.error_px = std::min(error_ / settings_.pixel, std::numeric_limits<double>::max());
     result_.at = state_;
     return result_;

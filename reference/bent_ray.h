@@ -12,8 +12,8 @@
 /// allow. BentHit::error_px is their sum over all steps: it is about the displacement's error where steps are few to a
 /// feature, pessimistic (that of order 4) where they are many, and knows nothing of chords and of a field that spreads
 /// rays apart. Against 1e-6 pixels the displacement's error stays below the tolerance (README, How fast). To it come,
-/// of adaptive, the part of the tolerance that does not matter (kQuietShare), and what interpolation in lattices does
-/// to 95 % of rays at most (FieldInstant::interpolation).
+/// of adaptive, the part of the tolerance that it may miss unseen (kUnseenShare), and what interpolation in lattices
+/// does to 95 % of rays at most (FieldInstant::interpolation).
 ///
 /// Surfaces: surface_search.h; chords deviate from the curve by less than half of the tolerance.
 ///
@@ -41,6 +41,10 @@ inline constexpr double kStepShare = 32, kStepShareOverSurface = 5;
 /// What turns a ray by less than this part of the tolerance does not matter: a blob to adaptive's choice of steps (its
 /// force counts all the same) and to first order, air over a lone surface, and what first order redirects a ray by.
 inline constexpr double kQuietShare = 100;
+/// Steps as long as a feature miss some of it by luck, and their estimates with it: among blobs, thin screens and
+/// surfaces together 95 % of rays were off by no more than the estimate and this part of the tolerance. Over a lone
+/// surface it is kQuietShare's.
+inline constexpr double kUnseenShare = 8;
 /// The finest tolerance, tolerance_px * pixel, that is of use: tighter ones count as this [rad or m].
 inline constexpr double kFinestTolerance = 1e-13;
 /// A ray is trapped if it has turned through this angle [rad], every bend counted, on a way whose ends are closer to

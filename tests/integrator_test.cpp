@@ -87,6 +87,31 @@ TEST(Tolerance, BoundsTheErrorAndIsReported) {
     EXPECT_LE(glm::length(hit.at.x - dvec3(-1, 0, 0)), settings.tolerance_px * settings.pixel);
 }
 
+// Among blobs steps are as long as these: what they miss by luck their own estimates do not see.
+TEST(Tolerance, TheErrorIsNoLessThanItIsSaidToBe) {
+    BlobsSpec blobs;
+    blobs.blobs = {{{0, 0.8, -30}, 0.3, 600}, {{0.4, 0.7, -60}, 0.2, 700}, {{-0.6, 0.5, -50}, 0.25, 500}};
+    const Air air({blobs});
+    const auto wall = geometry({plane({0, 0, -300}, {0, 0, 1})});
+    for (const double tolerance : {0.1, 0.01}) {
+        TraceSettings settings = usual(), exact = usual();
+        settings.tolerance_px = tolerance;
+        exact.tolerance_px = 1e-6;
+        int beyond = 0, rays = 0;
+        for (double x = -1; x <= 1; x += 0.125)
+            for (double y = 0; y <= 1.2; y += 0.125) {
+                const dvec3 from(0, 1.2, 0), d = glm::normalize(dvec3(x, y, -60) - from);
+                const BentHit a = trace(air.now, wall.get(), from, d, settings),
+                              b = trace(air.now, wall.get(), from, d, exact);
+                const double error = glm::distance(a.at.x, b.at.x) / a.length / settings.pixel;
+                EXPECT_LE(error, tolerance);
+                if (error > a.error_px) ++beyond;
+                ++rays;
+            }
+        EXPECT_LE(beyond, 0.05 * rays) << tolerance;
+    }
+}
+
 TEST(Tolerance, FixedStepsEstimateTheirErrors) {
     const Air air({profile(ProfileKind::FishEye)});
     const auto wall = geometry({plane({-1, 0, 0}, {1, 0, 0})});
