@@ -128,7 +128,7 @@ void add_render(CLI::App& command, RenderOptions& o) {
     command.add_flag("--compact", o.compact,
                      fmt::format("small files: colour slightly lossy (DWAA), Z to {:.0e}", kCompactDepthError));
     command.add_flag("--overwrite", o.overwrite, "render frames again whose files exist");
-    command.add_flag("--verbose", o.verbose, "say how many steps and how much time frames took");
+    command.add_flag("-v,--verbose", o.verbose, "say how many steps and how much time frames took");
 }
 
 void add_path(CLI::App& command, PathOptions& o) {
