@@ -100,7 +100,9 @@ struct Case {
 
     Case(AirKind kind, Integrator integrator, double tolerance_px) : scene(road()) {
         scene.media = {medium(kind)};
-        air = std::make_unique<SceneAir>(scene, RaySettings{.integrator = integrator, .tolerance_px = tolerance_px});
+        const double f_px = kPixels * CameraPath(scene.camera, kWidth, kHeight).reference().f_px;
+        air = std::make_unique<SceneAir>(scene, RaySettings{.integrator = integrator, .tolerance_px = tolerance_px},
+                                         RayEnds{far_distance(scene), tolerance_px / f_px, true});
         field = std::make_unique<FieldInstant>(air->at(scene.time.first_frame));
         const Camera camera = air->path().reference();
         geometry = std::make_unique<Geometry>(scene, camera.position);
