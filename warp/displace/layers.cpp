@@ -68,7 +68,7 @@ MediaLayers::MediaLayers(const Scene& scene, const DisplacerSettings& settings, 
 }
 
 void MediaLayers::keep(MediumLayer layer, std::string note) {
-    const double rms = std::sqrt(expected_variance(layer, settings_.far));
+    double rms = std::sqrt(expected_variance(layer, settings_.far, true));
     if (!(rms <= kLargestShift))
         throw UserError(
             fmt::format("medium.{}: it would move pixels by {:.2g} px rms, and a map holds at most {:g} px; lower its "
@@ -77,7 +77,9 @@ void MediaLayers::keep(MediumLayer layer, std::string note) {
     // a camera may zoom in later; the rays of a wide view's corners cross more air, and show a bend larger
     const double wide = corner_gain(layer.model);
     const double deeper = deepest() > settings_.far ? kDeeper : 1;
-    if (!camera_moves_ && kLargestOverRms * rms * wide * deeper < settings_.negligible) {
+    const auto negligible = [&] { return kLargestOverRms * rms * wide * deeper < settings_.negligible; };
+    if (!camera_moves_ && negligible()) rms = std::sqrt(expected_variance(layer, settings_.far));
+    if (!camera_moves_ && negligible()) {
         notes_.push_back(fmt::format("medium.{}: left out, it moves no pixel by more than {:g} px ({:.2g} px rms)",
                                      layer.medium, settings_.negligible, rms));
         return;

@@ -78,8 +78,8 @@ class MediaLayers {
                                 double farthest, double gain, bool reference) const;
 
     /// Variance of |d| [px²] that a layer is expected to have for objects at axial distance D, before any falloff, over
-    /// pixels and time.
-    double expected_variance(const MediumLayer& layer, double D) const;
+    /// pixels and time; of many blobs at the shot's beginning only where a rough figure will do.
+    double expected_variance(const MediumLayer& layer, double D, bool rough = false) const;
     /// Variance of ∂d_x/∂x of a layer's map at axial distance D (PHYSICS 6, last line), before any falloff: of lattices
     /// as for rays along their axis nearest to the view, of gradient noise and blobs from neighbouring pixels.
     double focusing_variance(const MediumLayer& layer, double D) const;
@@ -126,7 +126,7 @@ class MediaLayers {
     SampledVariance sampled_variance(const MediumLayer& layer, double D) const;
     /// Of |d| among blobs [px²], and the instants that it is taken over: blobs are dear to place, the fewer the more
     /// there are.
-    double blob_variance(const MediumLayer& layer, double D) const;
+    double blob_variance(const MediumLayer& layer, double D, int instants) const;
     int rms_instants(const MediumLayer& layer) const;
 
     /// Variance of the slopes where blobs are, at t = 0: within 1.5 σ of the middle of one taken at random.

@@ -11,6 +11,8 @@ namespace {
 /// Blobs that the expected rms is taken over, and instants that have so many between them. Wind is dear.
 constexpr double kRmsBlobs = 600;
 constexpr int kFewestRmsInstants = 2, kMostRmsInstants = 256, kMostRmsWinds = 16;
+/// So many are never all away at once.
+constexpr double kManyBlobs = 64;
 /// How far from its middle a blob moves anything to speak of [σ], and more blobs than this leave no pixel still.
 constexpr double kRmsReach = 3;
 constexpr std::size_t kDenseBlobs = 4096;
@@ -103,7 +105,7 @@ class BlobPixels {
 
 }  // namespace
 
-double MediaLayers::expected_variance(const MediumLayer& layer, double D) const {
+double MediaLayers::expected_variance(const MediumLayer& layer, double D, bool rough) const {
     const double pixels = perspective() ? reference_.f_px / D : reference_.f_px;  // of one metre of x1
     const double strength2 = strength_ * strength_;
     const double aspect2 = reference_.pixel_aspect * reference_.pixel_aspect;
@@ -114,7 +116,8 @@ double MediaLayers::expected_variance(const MediumLayer& layer, double D) const 
         const auto x1 = lattice->displacement_variance(rays.axis, D, rays.aperture);
         return strength2 * 0.5 * (1 + aspect2) * (x1[0] + x1[1]) * pixels * pixels;
     }
-    if (std::holds_alternative<BlobCloud>(layer.field)) return blob_variance(layer, D);
+    if (const auto* cloud = std::get_if<BlobCloud>(&layer.field))
+        return blob_variance(layer, D, rough && cloud->most() >= kManyBlobs ? 1 : rms_instants(layer));
     return sampled_variance(layer, D).shift;
 }
 
@@ -128,9 +131,9 @@ int MediaLayers::rms_instants(const MediumLayer& layer) const {
 
 /// Over pixels, most of them among the blobs, and over instants, the first of them t = 0: a shot begins there, and
 /// finds its wind made.
-double MediaLayers::blob_variance(const MediumLayer& layer, double D) const {
+double MediaLayers::blob_variance(const MediumLayer& layer, double D, int instants) const {
     const RandomStream stream(1, "expected rms");
-    const int instants = rms_instants(layer), each = std::max(kRmsRays / instants, 8);
+    const int each = std::max(kRmsRays / instants, 8);
     double sum = 0;
     for (int k = 0; k < instants; ++k) {
         check_cancelled(settings_.cancelled);
