@@ -146,10 +146,11 @@ void Shot::tell(const std::vector<int>& frames, bool verbose) {
     if (gain_ != 0)
         for (std::string& line : flat_lattices(scene_)) warnings_.push_back(std::move(line));
     if (displacer_->mirages() && depth_.far_is_unstated() && depth_.far() < kDefaultSky)
-        warnings_.push_back(fmt::format(
-            "the background, which a mirage mirrors, is taken to be only {:g} m away, for the other media's sake{}: "
-            "say with --far or plate.far how far it is",
-            depth_.far(), depth_.constant() ? "" : ", or where the farthest thing in the frame is"));
+        warnings_.push_back(
+            fmt::format("the background, which a mirage mirrors, is taken to be {:g} m away{}, for the other media's "
+                        "sake: say with "
+                        "--far or plate.far how far it is",
+                        depth_.far(), depth_.constant() ? "" : ", or where the frame's farthest thing is"));
     if (choice_ && choice_->p95 > *tolerance_)
         warnings_.push_back(
             choice_->exact

@@ -124,10 +124,8 @@ class MediaLayers {
         double slope = 0;  ///< of ∂d_x/∂x and ∂d_y/∂y, pixel to pixel
     };
     SampledVariance sampled_variance(const MediumLayer& layer, double D) const;
-    /// Of |d| among blobs [px²], and the instants that it is taken over: blobs are dear to place, the fewer the more
-    /// there are.
+    /// Of |d| among blobs [px²], over so many instants at most.
     double blob_variance(const MediumLayer& layer, double D, int instants) const;
-    int rms_instants(const MediumLayer& layer) const;
 
     /// Variance of the slopes where blobs are, at t = 0: within 1.5 σ of the middle of one taken at random.
     double blob_focusing(const MediumLayer& layer, double D) const;

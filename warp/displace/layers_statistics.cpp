@@ -8,9 +8,17 @@
 namespace eikonal {
 namespace {
 
-/// Blobs that the expected rms is taken over, and instants that have so many between them. Wind is dear.
+/// Blobs that the expected rms is taken over, instants that have so many between them, those with blobs if a wind,
+/// which is dear, carries these, and pixels of each.
 constexpr double kRmsBlobs = 600;
-constexpr int kFewestRmsInstants = 2, kMostRmsInstants = 256, kMostRmsWinds = 16;
+constexpr int kFewestRmsInstants = 2, kMostRmsInstants = 512, kMostRmsWinds = 16, kFewestRmsPixels = 16;
+
+int rms_instants(const BlobsSpec& spec, const BlobCloud& cloud) {
+    if (spec.sources.empty()) return 1;
+    return static_cast<int>(
+        std::clamp<double>(std::ceil(kRmsBlobs / cloud.most()), kFewestRmsInstants, kMostRmsInstants));
+}
+
 /// So many are never all away at once.
 constexpr double kManyBlobs = 64;
 /// How far from its middle a blob moves anything to speak of [σ], and more blobs than this leave no pixel still.
@@ -117,42 +125,40 @@ double MediaLayers::expected_variance(const MediumLayer& layer, double D, bool r
         return strength2 * 0.5 * (1 + aspect2) * (x1[0] + x1[1]) * pixels * pixels;
     }
     if (const auto* cloud = std::get_if<BlobCloud>(&layer.field))
-        return blob_variance(layer, D, rough && cloud->most() >= kManyBlobs ? 1 : rms_instants(layer));
+        return blob_variance(layer, D,
+                             rough && cloud->most() >= kManyBlobs
+                                 ? 1
+                                 : rms_instants(std::get<BlobsSpec>(scene_.media[layer.medium]), *cloud));
     return sampled_variance(layer, D).shift;
 }
 
-int MediaLayers::rms_instants(const MediumLayer& layer) const {
-    const auto& cloud = std::get<BlobCloud>(layer.field);
-    const auto& spec = std::get<BlobsSpec>(scene_.media[layer.medium]);
-    if (spec.sources.empty()) return 1;
-    const int most = spec.wind && spec.wind->rms > 0 ? kMostRmsWinds : kMostRmsInstants;
-    return static_cast<int>(std::clamp<double>(std::ceil(kRmsBlobs / cloud.most()), kFewestRmsInstants, most));
-}
-
-/// Over pixels, most of them among the blobs, and over instants, the first of them t = 0: a shot begins there, and
-/// finds its wind made.
+/// Over pixels, most of them among the blobs, and over `instants`, the first of them t = 0: a shot begins there, and
+/// finds its wind made. Fewer if there is a wind and blobs at many of them.
 double MediaLayers::blob_variance(const MediumLayer& layer, double D, int instants) const {
     const RandomStream stream(1, "expected rms");
-    const int each = std::max(kRmsRays / instants, 8);
+    const auto& spec = std::get<BlobsSpec>(scene_.media[layer.medium]);
+    const bool carried = !spec.sources.empty() && spec.wind && spec.wind->rms > 0;
+    const int each = std::max(kRmsRays / instants, kFewestRmsPixels);
     double sum = 0;
-    for (int k = 0; k < instants; ++k) {
+    int tried = 0;
+    for (int with_blobs = 0; tried < instants && !(carried && with_blobs == kMostRmsWinds); ++tried) {
         check_cancelled(settings_.cancelled);
-        const double t =
-            k == 0 ? 0 : 1e3 * stream.uniform(static_cast<std::uint64_t>(4 * kRmsRays * kMostRmsInstants + k));
+        const double t = tried == 0 ? 0 : 1e3 * stream.uniform((1ULL << 32) + static_cast<std::uint64_t>(tried));
         const LayerInstant instant = this->instant(layer, reference_, t, D, D, 1);
         const auto& bends = std::get<BlobBends>(instant);
+        if (!bends.blobs().empty()) ++with_blobs;
         if (bends.seen().empty()) continue;
         const BlobPixels pixels(bends.seen(), reference_, {0, 0, settings_.width, settings_.height});
         for (int i = 0; i < each; ++i) {
-            const auto [x, y, weight] = pixels.draw(stream, k * each + i);
+            const auto [x, y, weight] = pixels.draw(stream, tried * each + i);
             const Band band = bends.every_pixel({x, y, 1, 1}, D);
             BandRow row;
             row.start(band, y);
             const Shift d = row.at(x, D);
-            sum += weight * (double{d.x} * d.x + double{d.y} * d.y) / (each * instants);
+            sum += weight * (double{d.x} * d.x + double{d.y} * d.y) / each;
         }
     }
-    return sum;
+    return sum / tried;
 }
 
 /// Of gradient noise, over rays spread over the picture and their neighbours one pixel to the right or below, by turns,

@@ -185,6 +185,15 @@ struct SkimmingRay : Ray {
             }
         return std::nullopt;
     }
+    /// Whether an object at about depth z is upon pixel + d or beside it.
+    bool touches(Shift d, double z) const {
+        const int xi = x + whole(d.x + 0.5f), yi = y + whole(d.y + 0.5f);
+        for (int j = yi - 1; j <= yi + 1; ++j)
+            for (int i = xi - 1; i <= xi + 1; ++i)
+                if (const float there = depth.at(i, j); there >= kBehind * z && kBehind * there <= z)
+                    if (!ground.is(i, j, there)) return true;
+        return false;
+    }
     /// Whether no object up to depth z is about the way from pixel + a to pixel + b. Looks at single pixels where these
     /// are few.
     bool clear(Shift a, Shift b, double z) const {
@@ -299,7 +308,7 @@ Shift skim(const SkimmingRay& ray, double nearest) {
             const Shift last_open = bisect(ray, z, d, next, e);
             // what lies before the ray by then, and not beside what it was over, is an object that it passes behind
             if (met.stop >= z || met.seen >= facet.limit) return ray.settled(last_open);
-            if (met.stop >= kBehind * z) return last_open;  // its foot, on the ground
+            if (met.stop >= kBehind * z && ray.touches(ray.at(met.stop), met.stop)) return last_open;  // its foot
             if (!in_sight) in_sight = ray.stood_back(last_open, e, d);
             const Shift way{e.x - d.x, e.y - d.y};
             const auto [open, there] = follow_hidden(ray, {next, e});
