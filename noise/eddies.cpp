@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <utility>
 
 #include "noise/dispatch.h"
 #include "noise/lattice_snapshot.h"
@@ -61,6 +63,12 @@ LatticeField potential(std::uint64_t seed, std::uint64_t component) {
         spec, {{kEddySize, kEddySize, kEddySize, kEddyTimes}, {kEddyPeriod, kEddyPeriod, kEddyPeriod, kEddyLoop}});
 }
 
+std::array<LatticeField, 3> potentials(std::uint64_t seed) {
+    std::array<std::optional<LatticeField>, 3> made;
+    tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t c) { made[c].emplace(potential(seed, c)); });
+    return {std::move(*made[0]), std::move(*made[1]), std::move(*made[2])};
+}
+
 /// 1/√(k² + k0²) turns a lattice field's spectrum into the potential's; k in signed bins.
 double potential_factor(int mx, int my, int mz) {
     const double k1 = portable::kTwoPi / kEddyPeriod, m2 = mx * mx + my * my + mz * mz;
@@ -104,8 +112,7 @@ double curl_variance(const LatticeField& field) {
 }  // namespace
 
 EddyField::EddyField(std::uint64_t seed)
-    : potential_{potential(seed, 0), potential(seed, 1), potential(seed, 2)},
-      plan_(FftPlan::Kind::ComplexToReal, kSizes, 3) {
+    : potential_(potentials(seed)), plan_(FftPlan::Kind::ComplexToReal, kSizes, 3) {
     // The samples are weighed by slopes a cell: their unit is a cell.
     const double scale = 1 / (kCell * std::sqrt(curl_variance(potential_[0])));
     std::array<double, kSize> prefilter;

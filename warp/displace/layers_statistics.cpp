@@ -1,6 +1,10 @@
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "noise/random.h"
 #include "warp/displace/layers.h"
@@ -28,7 +32,7 @@ constexpr std::size_t kDenseBlobs = 4096;
 constexpr double kRmsSteps = 256e3;
 constexpr int kFewestRmsRays = 32;
 /// Pairs of pixels among blobs.
-constexpr std::uint64_t kBlobPairs = 96;
+constexpr std::size_t kBlobPairs = 96;
 
 /// d of a pixel for an object at D, and how it changes to the next one, to the right or below.
 struct PixelPair {
@@ -138,7 +142,7 @@ double MediaLayers::blob_variance(const MediumLayer& layer, double D, int instan
     const RandomStream stream(1, "expected rms");
     const auto& spec = std::get<BlobsSpec>(scene_.media[layer.medium]);
     const bool carried = !spec.sources.empty() && spec.wind && spec.wind->rms > 0;
-    const int each = std::max(kRmsRays / instants, kFewestRmsPixels);
+    const int each = std::max(kRmsRays / std::max(instants, kFewestRmsInstants * 2), kFewestRmsPixels);
     double sum = 0;
     int tried = 0;
     for (int with_blobs = 0; tried < instants && !(carried && with_blobs == kMostRmsWinds); ++tried) {
@@ -192,19 +196,23 @@ double MediaLayers::blob_focusing(const MediumLayer& layer, double D) const {
     if (blobs.empty()) return 0;
     const RandomStream stream(1, "focusing of blobs");
     const PixelWindow picture{0, 0, settings_.width, settings_.height};
-    double sum = 0;
-    int pairs = 0;
-    for (std::uint64_t i = 0; i < kBlobPairs; ++i) {
+    std::array<std::optional<double>, kBlobPairs> slopes;
+    tbb::parallel_for(std::size_t{0}, kBlobPairs, [&](std::size_t i) {
         check_cancelled(settings_.cancelled);
         const SeenBlob& blob =
             blobs[static_cast<std::size_t>(stream.uniform(4 * i) * static_cast<double>(blobs.size()))];
         const double scale = perspective() ? 1 / std::max(blob.forward, blob.sigma) : 1;
         const auto aside = [&](std::uint64_t c) { return (3 * stream.uniform(4 * i + c) - 1.5) * blob.sigma; };
         const dvec2 place = reference_.pixel(scale * dvec2(blob.right + aside(1), blob.up + aside(2)));
-        if (!(place.x >= 0 && place.x < picture.width && place.y >= 0 && place.y < picture.height)) continue;
+        if (!(place.x >= 0 && place.x < picture.width && place.y >= 0 && place.y < picture.height)) return;
         const PixelPair pair(static_cast<int>(place.x), static_cast<int>(place.y), i % 2 == 0);
-        const double slope = pair.shifts({bends.every_pixel(pair.window, D)}, D).slope;
-        sum += slope * slope;
+        slopes[i] = pair.shifts({bends.every_pixel(pair.window, D)}, D).slope;
+    });
+    double sum = 0;
+    int pairs = 0;
+    for (const std::optional<double>& slope : slopes) {
+        if (!slope) continue;
+        sum += *slope * *slope;
         ++pairs;
     }
     return pairs > 0 ? sum / pairs : 0;
