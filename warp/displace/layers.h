@@ -124,8 +124,8 @@ class MediaLayers {
         double slope = 0;  ///< of ∂d_x/∂x and ∂d_y/∂y, pixel to pixel
     };
     SampledVariance sampled_variance(const MediumLayer& layer, double D) const;
-    /// Of |d| among blobs [px²], over so many instants at most.
-    double blob_variance(const MediumLayer& layer, double D, int instants) const;
+    /// Of |d| among blobs [px²], over so many instants at most and so many rays, about.
+    double blob_variance(const MediumLayer& layer, double D, int instants, int rays) const;
 
     /// Variance of the slopes where blobs are, at t = 0: within 1.5 σ of the middle of one taken at random.
     double blob_focusing(const MediumLayer& layer, double D) const;

@@ -23,8 +23,9 @@ int rms_instants(const BlobsSpec& spec, const BlobCloud& cloud) {
         std::clamp<double>(std::ceil(kRmsBlobs / cloud.most()), kFewestRmsInstants, kMostRmsInstants));
 }
 
-/// So many are never all away at once.
+/// So many are never all away at once, and so many pixels give their rms roughly.
 constexpr double kManyBlobs = 64;
+constexpr int kRoughRays = 64;
 /// How far from its middle a blob moves anything to speak of [σ], and more blobs than this leave no pixel still.
 constexpr double kRmsReach = 3;
 constexpr std::size_t kDenseBlobs = 4096;
@@ -129,20 +130,20 @@ double MediaLayers::expected_variance(const MediumLayer& layer, double D, bool r
         return strength2 * 0.5 * (1 + aspect2) * (x1[0] + x1[1]) * pixels * pixels;
     }
     if (const auto* cloud = std::get_if<BlobCloud>(&layer.field))
-        return blob_variance(layer, D,
-                             rough && cloud->most() >= kManyBlobs
-                                 ? 1
-                                 : rms_instants(std::get<BlobsSpec>(scene_.media[layer.medium]), *cloud));
+        return rough && cloud->most() >= kManyBlobs
+                   ? blob_variance(layer, D, 1, kRoughRays)
+                   : blob_variance(layer, D, rms_instants(std::get<BlobsSpec>(scene_.media[layer.medium]), *cloud),
+                                   kRmsRays);
     return sampled_variance(layer, D).shift;
 }
 
 /// Over pixels, most of them among the blobs, and over `instants`, the first of them t = 0: a shot begins there, and
 /// finds its wind made. Fewer if there is a wind and blobs at many of them.
-double MediaLayers::blob_variance(const MediumLayer& layer, double D, int instants) const {
+double MediaLayers::blob_variance(const MediumLayer& layer, double D, int instants, int rays) const {
     const RandomStream stream(1, "expected rms");
     const auto& spec = std::get<BlobsSpec>(scene_.media[layer.medium]);
     const bool carried = !spec.sources.empty() && spec.wind && spec.wind->rms > 0;
-    const int each = std::max(kRmsRays / std::max(instants, kFewestRmsInstants * 2), kFewestRmsPixels);
+    const int each = std::max(rays / instants, kFewestRmsPixels);
     double sum = 0;
     int tried = 0;
     for (int with_blobs = 0; tried < instants && !(carried && with_blobs == kMostRmsWinds); ++tried) {
