@@ -82,12 +82,28 @@ class FaceCheck {
     std::array<List, 3> lists_{{{"v"}, {"vt"}, {"vn"}}};
 };
 
-/// The text with lines that end in a backslash joined to the next (not comments), as many lines as before.
-std::stringstream joined(std::istream& stream) {
+/// A line that names a material library whose name has spaces, with these escaped; any other as it is.
+std::string with_whole_name(const std::string& line, const std::filesystem::path& folder) {
+    constexpr std::string_view kLibrary = "mtllib ";
+    if (!line.starts_with(kLibrary)) return line;
+    const std::string name = line.substr(kLibrary.size());
+    std::error_code ignored;
+    if (name.find(' ') == name.npos || !std::filesystem::is_regular_file(folder / name, ignored)) return line;
+    std::string result(kLibrary);
+    for (const char c : name) result += c == ' ' ? "\\ " : std::string(1, c);
+    return result;
+}
+
+/// The text of a file in `folder` without a byte order mark, with lines that end in a backslash joined to the next (not
+/// comments), as many lines as before.
+std::stringstream joined(std::istream& stream, const std::filesystem::path& folder) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
     std::stringstream result;
     std::string text, owed;
-    while (std::getline(stream, text)) {
+    for (bool first = true; std::getline(stream, text); first = false) {
+        if (first && text.starts_with(kMark)) text.erase(0, kMark.size());
         if (text.ends_with('\r')) text.pop_back();
+        text = with_whole_name(text, folder);
         if (text.ends_with('\\') && text.find('#') == text.npos) {
             text.back() = ' ';
             result << text;
@@ -214,7 +230,7 @@ Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset) {
     std::ifstream opened(file);
     if (!opened || std::filesystem::is_directory(file))
         throw UserError(fmt::format("cannot read the mesh {}: give an existing .obj file", file.string()));
-    std::stringstream stream = joined(opened);
+    std::stringstream stream = joined(opened, file.parent_path());
     check_numbers(stream, file);
     tinyobj::attrib_t attrib;
     std::vector<tinyobj::shape_t> shapes;

@@ -320,6 +320,18 @@ TEST_F(ReferenceTest, MeshMaterialsColorsAndDegenerateTriangles) {
     EXPECT_EQ(mesh.materials[0].emission, dvec3(1, 2, 3));
 }
 
+TEST_F(ReferenceTest, MeshesWithAMarkAndSpacesInNames) {
+    write("my own.mtl", "newmtl a\nKd 0.5 0.25 0.125\n");
+    const Mesh mesh = read_mesh(write("m.obj",
+                                      "\xEF\xBB\xBFv 0 0 0\nmtllib my own.mtl\r\nv 1 0 0\nv 0 1 0\nusemtl a\n"
+                                      "f 1 2 3\n"),
+                                1, dvec3(0));
+    ASSERT_EQ(mesh.triangles.size(), 1u);
+    EXPECT_EQ(mesh.positions[1], dvec3(1, 0, 0));
+    ASSERT_EQ(mesh.materials.size(), 1u);
+    EXPECT_EQ(mesh.materials[0].diffuse, dvec3(0.5, 0.25, 0.125));
+}
+
 /// Runs `action` and expects a UserError whose message has all `parts`, on one line.
 void expect_user_error(const std::function<void()>& action, const std::vector<std::string>& parts) {
     try {
