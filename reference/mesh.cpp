@@ -104,6 +104,8 @@ std::stringstream joined(std::istream& stream, const std::filesystem::path& fold
         if (first && text.starts_with(kMark)) text.erase(0, kMark.size());
         if (text.ends_with('\r')) text.pop_back();
         text = with_whole_name(text, folder);
+        // tinyobjloader takes no comment behind a face
+        if (text.starts_with("f ") && text.find('#') != text.npos) text.erase(text.find('#'));
         if (text.ends_with('\\') && text.find('#') == text.npos) {
             text.back() = ' ';
             result << text;

@@ -191,7 +191,11 @@ RenderedFrame Renderer::render(int frame, const FrameWatch& watch, std::optional
     const Camera camera = path_.at(frame);
     std::optional<Air> air = air_at(frame, camera);
     if (air) air->background = background;
-    if (air && watch.probed) watch.probed(try_rays(camera, frame, &*air, {}));
+    if (air && watch.probed) {
+        Probe probe = try_rays(camera, frame, &*air, {});
+        if (settings_.rays.integrator == Integrator::Adaptive) try_again(camera, frame, *air, probe);
+        watch.probed(probe);
+    }
     if (air && settings_.light_rays > 0 && scene_.light && settings_.colour)
         air->sunlight.emplace(scene_, geometry_, air->field, air->trace, settings_.light_rays, settings_.cancelled,
                               watch.light);
@@ -273,6 +277,24 @@ Probe Renderer::try_rays(const Camera& camera, int frame, Air* air, const ProbeL
     for (auto* plane : {&p.depth, &p.length, &p.u, &p.v, &p.id, &p.steps, &p.error, &p.magnification})
         if (!plane->empty()) plane->resize(static_cast<std::size_t>(done));
     return probe;
+}
+
+/// Compares the rays that a probe has tried and that came to an end with themselves at a finer tolerance.
+void Renderer::try_again(const Camera& camera, int frame, Air& air, Probe& probe) const {
+    const double tolerance = air.trace.tolerance_px;
+    air.trace.tolerance_px *= kFinerTried;
+    ProbeLimits limits;
+    limits.first = limits.most = probe.pixels.width;
+    const Probe finer = try_rays(camera, frame, &air, limits);
+    air.trace.tolerance_px = tolerance;
+    for (std::size_t i = 0; i < probe.pixels.u.size(); ++i) {
+        const RenderedFrame &a = probe.pixels, &b = finer.pixels;
+        if (a.id[i] < 0 || a.id[i] != b.id[i]) continue;  // what is seen at edges is another matter
+        const double off = std::hypot(double{a.u[i]} - b.u[i], double{a.v[i]} - b.v[i]);
+        ++probe.again;
+        if (off > kPessimism * tolerance) ++probe.off;
+        probe.farthest_off = std::max(probe.farthest_off, off);
+    }
 }
 
 /// Of a ray that was given up: as if it went on, along the straight one and to where that ends, at the same number of

@@ -34,6 +34,9 @@
 namespace eikonal::reference {
 
 inline constexpr int kTriedSamples = 3;
+/// Part of the tolerance that rays are tried again with: steps' own estimates do not know how far apart the air spreads
+/// what they err by.
+inline constexpr double kFinerTried = 0.01;
 
 struct RenderSettings {
     int samples = 16;  ///< of colour a pixel >= 1
@@ -71,11 +74,15 @@ struct ProbeLimits {
 
 /// What a frame will be like.
 struct Probe {
-    RenderedFrame pixels;           ///< those tried, in one row, under straight sunlight
-    int samples = 0;                ///< of colour a pixel
-    int step_limit = 0;             ///< what ended the rays that `pixels` count as unfinished
-    double steps_to_come = 0;       ///< that those rays would still take, up to their budget
-    std::size_t beyond = 0;         ///< of them, those that would use up their budget
+    RenderedFrame pixels;      ///< those tried, in one row, under straight sunlight
+    int samples = 0;           ///< of colour a pixel
+    int step_limit = 0;        ///< what ended the rays that `pixels` count as unfinished
+    double steps_to_come = 0;  ///< that those rays would still take, up to their budget
+    std::size_t beyond = 0;    ///< of them, those that would use up their budget
+    /// Of rays tried again with kFinerTried of the tolerance: how many, how many were off by more than kPessimism times
+    /// the tolerance, and by how much at most [px].
+    std::size_t again = 0, off = 0;
+    double farthest_off = 0;
     double setup = 0, seconds = 0;  ///< wall time: of the media, of the rays
 
     /// Wall time of so many pixels [s].
@@ -125,6 +132,7 @@ class Renderer {
     std::optional<Air> air_at(int frame, const Camera& camera) const;
     RenderedFrame planes(int width, int height, bool colour) const;
     Probe try_rays(const Camera& camera, int frame, Air* air, const ProbeLimits& limits) const;
+    void try_again(const Camera& camera, int frame, Air& air, Probe& probe) const;
     double longest_way(const Camera& camera, double open) const;
     RayEnds ray_ends() const;
     void render_tile(const Camera& camera, int frame, const Tile& tile, const Air* air, RenderedFrame& into) const;

@@ -19,6 +19,9 @@
 namespace eikonal::reference {
 namespace {
 
+/// Times the tolerance that a pixel's error is told from: twice for steps, whose estimates are pessimistic, and what a
+/// spline made for the tolerance adds.
+constexpr double kWarnedError = 3;
 /// Part of the rays tried that may have no end before a frame's user is warned.
 constexpr double kManyWithoutEnd = 0.05;
 
@@ -42,14 +45,22 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
          "hold rays that go round and round (id -1, black): the media are too strong");
     warn(frame.unfinished(), "hold rays that the step budget ended (id -3, black); --step-budget raises it");
     warn(frame.without_index(), "hold rays that came to where n <= 0 (id -2, black); lower [optics] exaggeration");
-    const auto beyond = static_cast<std::size_t>(std::count_if(
-        frame.error.begin(), frame.error.end(), [&](float e) { return e > kPessimism * o.render.rays.tolerance_px; }));
+    // of pixels that show something
+    std::size_t beyond = 0, shown = 0;
+    float farthest = 0;
+    double errors = 0;
+    for (std::size_t i = 0; i < frame.error.size(); ++i) {
+        if (frame.id[i] < 0) continue;
+        ++shown;
+        errors += double{frame.error[i]};
+        farthest = std::max(farthest, frame.error[i]);
+        if (frame.error[i] > kWarnedError * o.render.rays.tolerance_px) ++beyond;
+    }
     if (o.render.rays.integrator == Integrator::Adaptive)
         warn(beyond, fmt::format("may be off by more than {:g} times the tolerance of {:g} px, by up to {:.2g} px as "
                                  "their rays estimate it; a smaller --tolerance brings them nearer, as far as a "
                                  "lattice's spline (--explain) can be finer",
-                                 kPessimism, o.render.rays.tolerance_px,
-                                 frame.error.empty() ? 0 : *std::max_element(frame.error.begin(), frame.error.end())));
+                                 kWarnedError, o.render.rays.tolerance_px, farthest));
     if (!frame.magnification.empty())
         fmt::print(stderr, "frame {}: {} of {} pixels are folded (negative magnification)\n", number, frame.folded(),
                    frame.id.size());
@@ -59,7 +70,7 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
         return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / area;
     };
     fmt::print(stderr, "frame {}: {:.2f} s, {:.1f} steps a ray, estimated error {:.2g} px on average\n", number,
-               seconds, mean(frame.steps), mean(frame.error));
+               seconds, mean(frame.steps), errors / static_cast<double>(std::max<std::size_t>(shown, 1)));
 }
 
 /// Says at once what would only show after a long time.
@@ -73,6 +84,13 @@ void warn(const RenderOptions& o, int frame, const Renderer& renderer, const Pro
                    "frame {}: warning: {} of {} rays tried go round and round, their pixels are black: the "
                    "media are too strong\n",
                    frame, trapped, probe.pixels.width);
+    if (many(probe.off))
+        fmt::print(
+            stderr,
+            "frame {}: warning: {} of {} rays tried are off by more than {:g} times the tolerance of {:g} px, by "
+            "up to {:.2g} px, whatever `error` says: the air spreads far apart what little rays err by; a "
+            "smaller --tolerance brings them nearer\n",
+            frame, probe.off, probe.again, kPessimism, o.render.rays.tolerance_px, probe.farthest_off);
     if (!many(probe.beyond)) return;
     const double seconds = probe.time(static_cast<double>(renderer.width()) * renderer.height(), o.render.samples);
     fmt::print(

@@ -324,7 +324,7 @@ TEST_F(ReferenceTest, MeshesWithAMarkAndSpacesInNames) {
     write("my own.mtl", "newmtl a\nKd 0.5 0.25 0.125\n");
     const Mesh mesh = read_mesh(write("m.obj",
                                       "\xEF\xBB\xBFv 0 0 0\nmtllib my own.mtl\r\nv 1 0 0\nv 0 1 0\nusemtl a\n"
-                                      "f 1 2 3\n"),
+                                      "f 1 2 3 # a corner\n"),
                                 1, dvec3(0));
     ASSERT_EQ(mesh.triangles.size(), 1u);
     EXPECT_EQ(mesh.positions[1], dvec3(1, 0, 0));
