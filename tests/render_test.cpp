@@ -394,6 +394,32 @@ TEST(Render, AGlassSphereRefractsBySnell) {
     }
 }
 
+// Air in which rays fold spreads what they err by; rays' own estimates do not know, those tried again do.
+TEST(Render, TellsWhereTheAirSpreadsErrors) {
+    for (const bool strong : {false, true}) {
+        TurbulenceSpec air;
+        air.form = TurbulenceForm::Lattice;
+        air.cn2 = strong ? 0.02 : 1e-6;
+        air.outer_scale = 1;
+        air.inner_scale = 0.4;
+        air.lattice = {16, 16, 16, 1};
+        air.period = {4, 4, 4, 1};
+        Scene scene = scene_with({quad({0, 1.5, -12}, {0, 0, 1}, 100, {1, 1, 1})});
+        scene.media = {air};
+        std::optional<Probe> told;
+        FrameWatch watch;
+        watch.probed = [&](const Probe& probe) { told = probe; };
+        Renderer(scene, settings()).render(1, watch);
+        ASSERT_TRUE(told);
+        EXPECT_GT(told->again, 32U);
+        if (strong)
+            EXPECT_GT(told->off, 0U);
+        else
+            EXPECT_EQ(told->off, 0U);
+        EXPECT_EQ(told->farthest_off > kPessimism * settings().rays.tolerance_px, strong);
+    }
+}
+
 TEST(Render, SameBytesForAnyNumberOfThreads) {
     Scene scene = mirage();
     scene.media.emplace_back(TurbulenceSpec{});
