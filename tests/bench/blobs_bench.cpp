@@ -7,10 +7,10 @@
 #include <cmath>
 #include <string>
 
-#include "noise/blobs.h"
-#include "noise/random.h"
-#include "warp/displace/blob_bends.h"
+#include "noise/blobs/blobs.h"
+#include "noise/math/random.h"
 #include "warp/displace/displacer.h"
+#include "warp/displace/media/blobs/seen_blobs.h"
 
 namespace {
 
@@ -50,7 +50,7 @@ void blobs(benchmark::State& state) {
     std::size_t moved = 0;
     for (std::size_t i = 0; i < window.area(); ++i) moved += uv[2 * i] != 0 || uv[2 * i + 1] != 0;
     double discs = 0;
-    const BlobBends bends(BlobCloud(spec, index_law(scene.optics), "blobs").at(0), 1, displacer.camera(1), kWall, 1);
+    const SeenBlobs bends(BlobCloud(spec, index_law(scene.optics), "blobs").at(0), 1, displacer.camera(1), kWall, 1);
     for (const SeenBlob& b : bends.seen()) {
         const double radius = b.reach * kFocal / b.forward;
         discs += 3.141592653589793 * radius * radius;

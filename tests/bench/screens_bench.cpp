@@ -5,15 +5,15 @@
 #include <array>
 #include <vector>
 
-#include "noise/gradient_noise.h"
-#include "noise/screens.h"
+#include "noise/turbulence/gradient_noise/gradient_noise.h"
+#include "noise/turbulence/screens/screens.h"
 
 namespace {
 
 using namespace eikonal;
 
 /// A 1080p view of 40 degrees over 100 m of the default medium.
-const ScreenView kView{true, 100, 0.364, 0.205, 0.728 / 1920, 0.02, 24};
+const ShotView kView{true, 100, 0.364, 0.205, 0.728 / 1920, 0.02, 24};
 
 void screens_frame(benchmark::State& state) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);

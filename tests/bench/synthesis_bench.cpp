@@ -1,18 +1,18 @@
 // Synthesis of the 4-D force field (n, F.x, F.y, F.z on 32⁴) against the same four transforms alone.
 //
 // Synthesis = drawing every amplitude + four spectra + four inverse transforms, memory included. The peers are the four
-// transforms of an already filled spectrum: with our own plans (portable codelets, noise/fft.h) and with the plan that
-// FFTW makes by default, whose SIMD codelets are faster but round differently from one processor to the next.
-// The three run in turn within one iteration, on one thread and by its own processor time, so that a busy machine slows
-// all alike; reported are medians of the ratios.
+// transforms of an already filled spectrum: with our own plans (portable codelets, noise/math/fft.h) and with the plan
+// that FFTW makes by default, whose SIMD codelets are faster but round differently from one processor to the next. The
+// three run in turn within one iteration, on one thread and by its own processor time, so that a busy machine slows all
+// alike; reported are medians of the ratios.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <ctime>
 
-#include "noise/lattice.h"
-#include "noise/lattice_snapshot.h"
+#include "noise/turbulence/lattice/lattice.h"
+#include "noise/turbulence/lattice/lattice_instant.h"
 
 namespace eikonal {
 namespace {
@@ -93,7 +93,7 @@ void BM_Snapshot(benchmark::State& state) {
     TurbulenceSpec spec;
     spec.alpha = 1;
     const LatticeField field(spec, {{64, 64, 64, 32}, {2, 2, 2, 4}});
-    for (auto _ : state) benchmark::DoNotOptimize(LatticeSnapshot(field, 1.0).upper_bound());
+    for (auto _ : state) benchmark::DoNotOptimize(LatticeInstant(field, 1.0).upper_bound());
 }
 BENCHMARK(BM_Snapshot)->Unit(benchmark::kMillisecond);
 

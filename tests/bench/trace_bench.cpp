@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
-#include "reference/bent_ray.h"
-#include "reference/render.h"
+#include "reference/trace/bent_ray.h"
+#include "reference/trace/render.h"
 
 namespace {
 
@@ -93,7 +93,7 @@ MediumSpec medium(AirKind kind) {
 struct Case {
     Scene scene;
     std::unique_ptr<SceneAir> air;
-    std::unique_ptr<FieldInstant> field;
+    std::unique_ptr<AirInstant> field;
     std::unique_ptr<Geometry> geometry;
     TraceSettings settings;
     std::vector<CameraRay> rays;
@@ -103,7 +103,7 @@ struct Case {
         const double f_px = kPixels * CameraPath(scene.camera, kWidth, kHeight).reference().f_px;
         air = std::make_unique<SceneAir>(scene, RaySettings{.integrator = integrator, .tolerance_px = tolerance_px},
                                          RayEnds{far_distance(scene), tolerance_px / f_px, true});
-        field = std::make_unique<FieldInstant>(air->at(scene.time.first_frame));
+        field = std::make_unique<AirInstant>(air->at(scene.time.first_frame));
         const Camera camera = air->path().reference();
         geometry = std::make_unique<Geometry>(scene, camera.position);
         settings = air->trace_settings(camera);

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/scene/camera.h"
 #include "warp/scene/scene.h"
 
@@ -64,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 #include <fstream>
 #include <iterator>
 
-#include "noise/random.h"
+#include "noise/math/random.h"
 
 namespace {
 
@@ -83,7 +83,8 @@ const char* const kCorpus[] = {
     "form = \"lattice\"\nlattice = [32, 32, 32, 32]\nperiod = [10, 10, 10, 5]\nfalloff = {origin = [0,0,0], normal = "
     "[0,1,0], length = 2}\n",
     "[[medium]]\ntype = \"surface\"\nsurface_temperature = 305\ndropoff = 0.01\n[[medium]]\ntype = \"blobs\"\n"
-    "blob = [{center = [1,2,3], sigma = 0.1, temperature = 900}]\nsource = [{rate = 3, lifetime = 5}]\nwind = {rms = 1}\n",
+    "blob = [{center = [1,2,3], sigma = 0.1, temperature = 900}]\nsource = [{rate = 3, lifetime = 5}]\nwind = {rms = "
+    "1}\n",
     "[[medium]]\ntype = \"profile\"\nprofile = \"fish-eye\"\nn0 = 2\nradius = 1\n",
     "[[object]]\nshape = \"mesh\"\nfile = \"a.obj\"\n[[object]]\ntexture = 'b.png'\n[light]\ncolor = [1,1,1]\n"
     "[background]\nimage = \"sky.exr\"\n",

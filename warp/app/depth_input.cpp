@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal {
 namespace {

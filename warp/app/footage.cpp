@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/app/depth_input.h"
 
 namespace eikonal {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <exception>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/app/commands.h"
 #include "warp/app/pipeline.h"
 #include "warp/app/shot.h"

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <limits>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/app/help_format.h"
 #include "warp/scene/background.h"
 #include "warp/scene/message.h"

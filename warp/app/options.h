@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "warp/displace/depth/depth_meeting.h"
 #include "warp/displace/displacer.h"
-#include "warp/displace/meet.h"
 #include "warp/image/depth_map.h"
 #include "warp/resample/resample.h"
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "noise/error.h"
-#include "warp/displace/model.h"
+#include "noise/base/error.h"
+#include "warp/displace/grid/model.h"
 #include "warp/image/interrupt.h"
 #include "warp/image/movie_writer.h"
 #include "warp/image/picture.h"

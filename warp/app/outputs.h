@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "warp/image/linear_image.h"
 #include "warp/image/sequence.h"
+#include "warp/pixels/linear_image.h"
 
 namespace eikonal {
 

@@ -10,8 +10,8 @@
 #include <chrono>
 #include <set>
 
-#include "noise/error.h"
-#include "noise/memory.h"
+#include "noise/base/error.h"
+#include "noise/base/memory.h"
 #include "warp/app/progress.h"
 #include "warp/displace/displacer.h"
 #include "warp/image/interrupt.h"

@@ -10,14 +10,14 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "noise/blob_instant.h"
-#include "noise/blobs.h"
-#include "noise/error.h"
-#include "noise/gradient_noise.h"
-#include "noise/lattice_snapshot.h"
-#include "noise/memory.h"
-#include "noise/screens.h"
-#include "noise/surface.h"
+#include "noise/base/error.h"
+#include "noise/base/memory.h"
+#include "noise/blobs/blob_instant.h"
+#include "noise/blobs/blobs.h"
+#include "noise/surface/surface.h"
+#include "noise/turbulence/gradient_noise/gradient_noise.h"
+#include "noise/turbulence/lattice/lattice_instant.h"
+#include "noise/turbulence/screens/screens.h"
 #include "warp/app/commands.h"
 #include "warp/app/outputs.h"
 #include "warp/app/pipeline.h"
@@ -143,7 +143,7 @@ Slices surface_slices(const SurfaceSpec& spec, const IndexLaw& law, double t, do
     const double half = 0.5 * kLayerHeight * spec.dropoff;
     const dvec3 center = spec.origin + half * spec.normal;
     return box_slices(center - dvec3(half), center + dvec3(half), t, exaggeration, force_factor,
-                      [layer = SurfaceLayer(spec, law)](const dvec3& x) { return layer.sample(x); });
+                      [layer = SurfaceIndex(spec, law)](const dvec3& x) { return layer.sample(x); });
 }
 
 /// A screen is one slice: n and F averaged over its slab, in the lateral axes of the camera (F.z = 0), at the strength
@@ -152,12 +152,12 @@ Slices screen_slices(const TurbulenceSpec& spec, double t, const Scene& scene, d
                      double force_factor) {
     const std::array<int, 2> resolution = scene.camera.resolution.value_or(kDefaultResolution);
     const Camera camera = CameraPath(scene.camera, resolution[0], resolution[1]).reference();
-    const ScreenView view = screen_view(camera, resolution[0], resolution[1], scene.optics.aperture,
-                                        DepthInput({}, scene).far(), scene.time.fps.value_or(kDefaultFps));
+    const ShotView view = screen_view(camera, resolution[0], resolution[1], scene.optics.aperture,
+                                      DepthInput({}, scene).far(), scene.time.fps.value_or(kDefaultFps));
     const std::vector<ScreenGeometry> geometry = layout_screens(spec, view);
     check_screens(spec, geometry, memory_limit());
     auto screens =
-        std::make_shared<const std::vector<ScreenSnapshot>>(ScreenField(spec, geometry, camera.right, camera.up).at(t));
+        std::make_shared<const std::vector<ScreenInstant>>(ScreenField(spec, geometry, camera.right, camera.up).at(t));
     int width = 0, height = 0;
     for (const ScreenGeometry& g : geometry) {
         width = std::max(width, g.nx);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/app/commands.h"
 #include "warp/app/explain.h"
 #include "warp/app/outputs.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/app/commands.h"
 #include "warp/app/explain.h"
 #include "warp/app/footage.h"

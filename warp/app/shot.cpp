@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/displace/stated_error.h"
 #include "warp/image/interrupt.h"
 #include "warp/image/plane.h"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "noise/refractivity.h"
-#include "warp/displace/model.h"
+#include "noise/medium/refractivity.h"
+#include "warp/displace/grid/model.h"
 #include "warp/image/interrupt.h"
-#include "warp/image/rows.h"
+#include "warp/pixels/rows.h"
 
 namespace eikonal {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <variant>
 
-#include "noise/error.h"
-#include "warp/displace/ray_frame.h"
+#include "noise/base/error.h"
+#include "warp/displace/grid/ray_frame.h"
 #include "warp/displace/stated_error.h"
-#include "warp/image/depth_map.h"
+#include "warp/pixels/depth_range.h"
 #include "warp/scene/background.h"
 
 namespace eikonal {

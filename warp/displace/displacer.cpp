@@ -9,8 +9,8 @@
 #include <mutex>
 #include <optional>
 
-#include "noise/dispatch.h"
-#include "noise/random.h"
+#include "noise/base/instruction_sets.h"
+#include "noise/math/random.h"
 #include "warp/displace/layers.h"
 #include "warp/displace/stated_error.h"
 
@@ -43,7 +43,7 @@ constexpr double kLeastDepth = 1e-12;
 
 /// What the interpolation in lattices that a ray and its judge share may move the pixel by, drawn from what is expected
 /// [px].
-dvec2 drawn_interpolation(const FieldInstant& field, const Camera& camera, const SamplePixel& pixel, double depth) {
+dvec2 drawn_interpolation(const AirInstant& field, const Camera& camera, const SamplePixel& pixel, double depth) {
     const StraightRay ray = straight_ray(camera, pixel.x + 0.5, pixel.y + 0.5);
     const double shift = field.interpolation(ray.at(0), ray.at(depth)).shift;
     if (!(shift > 0)) return {0, 0};
@@ -78,20 +78,20 @@ struct Displacer::Instant::State {
     double t, nearest, farthest, gain;
     bool (*cancelled)();
     int tile_width, tile_height;
-    std::vector<LayerInstant> own;         ///< of every layer
-    std::vector<LayerInstant> joint;       ///< of second-order: the one that bends rays instead
-    std::vector<std::vector<Band>> blank;  ///< of each that does
+    std::vector<LayerInstant> own;                     ///< of every layer
+    std::vector<LayerInstant> joint;                   ///< of second-order: the one that bends rays instead
+    std::vector<std::vector<DisplacementGrid>> blank;  ///< of each that does
     std::vector<Mirage> mirages;
 
     mutable std::once_flag judged;
-    mutable std::optional<SecondOrderInstant> judge;  ///< of maps; made when first asked for
+    mutable std::optional<BentRays> judge;  ///< of maps; made when first asked for
 
     const std::vector<LayerInstant>& bending() const { return joint.empty() ? own : joint; }
-    const SecondOrderInstant& reference() const {
+    const BentRays& reference() const {
         std::call_once(judged, [&] { judge.emplace(media->together(own, camera, t, nearest, farthest, gain, true)); });
         return *judge;
     }
-    std::vector<Band> tile_bands(const PixelWindow& tile, const PixelWindow& cover) const;
+    std::vector<DisplacementGrid> tile_grids(const PixelWindow& tile, const PixelWindow& cover) const;
     /// Those that may move a pixel of the window.
     std::span<const Mirage> mirages_on(const PixelWindow& window) const {
         const bool any =
@@ -100,22 +100,23 @@ struct Displacer::Instant::State {
     }
     /// Axial depth where the bent ray of a pixel alone, known at these depths, first meets a surface; infinite if
     /// never.
-    double meeting_with_surface(BandRows& row, const std::vector<double>& depths, int x, int y) const;
+    double meeting_with_surface(GridRows& row, const std::vector<double>& depths, int x, int y) const;
     /// Whether a sample's ray ends on a surface where the depth buffer has a hole: the tracer's goes on through it.
-    bool falls_through(BandRows& row, const DepthPlane& depth, const SamplePixel& p) const;
+    bool falls_through(GridRows& row, const DepthPlane& depth, const SamplePixel& p) const;
     /// The mirage that bends the rays of a tile through other media; null if there are none or they stay straight.
     const Mirage* air_bender(const PixelWindow& tile) const;
     /// The pixels whose air the rays of a tile may pass that a mirage bends: no farther from the picture than it is
     /// wide.
     PixelWindow air_around(const Mirage& mirage, const PixelWindow& tile) const;
     /// How far a bent ray may lead from its pixel [px].
-    int reach(const std::vector<Band>& bands, std::span<const Mirage> near, const PixelWindow& window) const;
+    int reach(const std::vector<DisplacementGrid>& grids, std::span<const Mirage> near,
+              const PixelWindow& window) const;
 };
 
-int Displacer::Instant::State::reach(const std::vector<Band>& bands, std::span<const Mirage> near,
+int Displacer::Instant::State::reach(const std::vector<DisplacementGrid>& grids, std::span<const Mirage> near,
                                      const PixelWindow& window) const {
     double largest = 0;
-    for (const Band& band : bands) largest += band.largest_shift();
+    for (const DisplacementGrid& grid : grids) largest += grid.largest_shift();
     for (const Mirage& m : near) largest += m.largest_shift(window);
     return static_cast<int>(std::min(std::ceil(kOvershoot * largest) + 1, 1e6));
 }
@@ -145,13 +146,13 @@ PixelWindow Displacer::Instant::State::air_around(const Mirage& mirage, const Pi
     return {x0, y0, x1 - x0, y1 - y0};
 }
 
-double Displacer::Instant::State::meeting_with_surface(BandRows& row, const std::vector<double>& depths, int x,
+double Displacer::Instant::State::meeting_with_surface(GridRows& row, const std::vector<double>& depths, int x,
                                                        int y) const {
     const auto below = [&](double z) {
         const Shift d = row.at(x, z);
         const dvec3 there = straight_ray(camera, x + 0.5 + d.x, y + 0.5 + d.y).at(z);
         return std::any_of(media->surface_layers().begin(), media->surface_layers().end(),
-                           [&](const SurfaceLayer& surface) { return surface.height(there) < 0; });
+                           [&](const SurfaceIndex& surface) { return surface.height(there) < 0; });
     };
     double above = 0;
     for (double z : depths) {
@@ -168,7 +169,7 @@ double Displacer::Instant::State::meeting_with_surface(BandRows& row, const std:
     return std::numeric_limits<double>::infinity();
 }
 
-bool Displacer::Instant::State::falls_through(BandRows& row, const DepthPlane& depth, const SamplePixel& p) const {
+bool Displacer::Instant::State::falls_through(GridRows& row, const DepthPlane& depth, const SamplePixel& p) const {
     const double end = row.end(p.x);
     if (!std::isfinite(end)) return false;
     const Shift d = row.at(p.x, end);
@@ -176,7 +177,7 @@ bool Displacer::Instant::State::falls_through(BandRows& row, const DepthPlane& d
     const PixelWindow& w = depth.window();
     if (!(x >= w.x0 && x < w.x0 + w.width && y >= w.y0 && y < w.y0 + w.height)) return false;  // not known
     const double z = depth.at(static_cast<int>(x), static_cast<int>(y));
-    const auto below = [&](const SurfaceLayer& surface) {
+    const auto below = [&](const SurfaceIndex& surface) {
         double highest = -std::numeric_limits<double>::infinity();  // of what the pixel may show
         for (const dvec2 corner : {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1), dvec2(1, 1)})
             highest = std::max(highest, surface.height(straight_ray(camera, x + corner.x, y + corner.y).at(z)));
@@ -185,31 +186,32 @@ bool Displacer::Instant::State::falls_through(BandRows& row, const DepthPlane& d
     return std::any_of(media->surface_layers().begin(), media->surface_layers().end(), below);
 }
 
-/// The bands of every layer on a tile, filled and scaled.
-std::vector<Band> Displacer::Instant::State::tile_bands(const PixelWindow& tile, const PixelWindow& cover) const {
-    std::vector<Band> bands;
+/// The grids of every layer on a tile, filled and scaled.
+std::vector<DisplacementGrid> Displacer::Instant::State::tile_grids(const PixelWindow& tile,
+                                                                    const PixelWindow& cover) const {
+    std::vector<DisplacementGrid> grids;
     const std::vector<LayerInstant>& layers = bending();
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (const auto* blobs = std::get_if<BlobBends>(&layers[i])) {
-            for (Band& band : blobs->bands(tile, cover, nearest, farthest)) {
-                band.scale(static_cast<float>(gain));
-                bands.push_back(std::move(band));
+        if (const auto* blobs = std::get_if<SeenBlobs>(&layers[i])) {
+            for (DisplacementGrid& grid : blobs->grids(tile, cover, nearest, farthest)) {
+                grid.scale(static_cast<float>(gain));
+                grids.push_back(std::move(grid));
             }
             continue;
         }
-        const bool has_gain = std::holds_alternative<SecondOrderInstant>(layers[i]);
-        for (Band band : blank[i]) {
-            band.cover(cover);
+        const bool has_gain = std::holds_alternative<BentRays>(layers[i]);
+        for (DisplacementGrid grid : blank[i]) {
+            grid.cover(cover);
             std::visit(
                 [&](const auto& layer) {
-                    if constexpr (requires { layer.fill(band, camera); }) layer.fill(band, camera);
+                    if constexpr (requires { layer.fill(grid, camera); }) layer.fill(grid, camera);
                 },
                 layers[i]);
-            if (!has_gain) band.scale(static_cast<float>(gain));
-            bands.push_back(std::move(band));
+            if (!has_gain) grid.scale(static_cast<float>(gain));
+            grids.push_back(std::move(grid));
         }
     }
-    return bands;
+    return grids;
 }
 
 Displacer::Instant::Instant(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -263,18 +265,19 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
         const std::span<const Mirage> mirages = state_->mirages_on(tile);
         const Mirage* bending = state_->air_bender(tile);
         const PixelWindow around = bending != nullptr ? state_->air_around(*bending, tile) : tile;
-        const std::vector<Band> bands = state_->tile_bands(around, bending != nullptr ? around : asked);
-        const BentAir air =
-            bending != nullptr ? BentAir(bands, *bending, asked, around, state_->nearest, state_->farthest) : BentAir();
-        const int reach = march ? state_->reach(bands, mirages, tile) : 1;
-        std::optional<MeetTile> meet;
+        const std::vector<DisplacementGrid> grids = state_->tile_grids(around, bending != nullptr ? around : asked);
+        const MirageAir air = bending != nullptr
+                                  ? MirageAir(grids, *bending, asked, around, state_->nearest, state_->farthest)
+                                  : MirageAir();
+        const int reach = march ? state_->reach(grids, mirages, tile) : 1;
+        std::optional<TileMeeting> meet;
         if (plane) meet.emplace(**plane, part, meeting, reach, mirages);
-        BandRows row;
+        GridRows row;
         for (int y = part.y0; y < part.y0 + part.height; ++y) {
             float* out = uv + static_cast<std::size_t>(y - window.y0) * stride +
                          2 * static_cast<std::size_t>(part.x0 - window.x0);
             const std::size_t values = 2 * static_cast<std::size_t>(part.width);
-            row.start(bands, y, mirages, 1, bending != nullptr ? &air : nullptr);
+            row.start(grids, y, mirages, 1, bending != nullptr ? &air : nullptr);
             if (meet) {
                 meet->row(row, y, out);
             } else {
@@ -289,7 +292,7 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
 StatedError Displacer::Instant::stated_error(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting,
                                              const float* uv) const {
     const bool blobs = std::any_of(state_->own.begin(), state_->own.end(),
-                                   [](const LayerInstant& layer) { return std::holds_alternative<BlobBends>(layer); });
+                                   [](const LayerInstant& layer) { return std::holds_alternative<SeenBlobs>(layer); });
     const auto samples = static_cast<int>(std::min<std::size_t>(window.area() / kPixelsPerSample, kErrorSamples));
     return statistics_of(
         sampled_errors(window, depth, meeting, uv, std::max(blobs ? samples / 2 : samples, kFewestErrorSamples)));
@@ -299,25 +302,25 @@ std::vector<double> Displacer::Instant::sampled_errors(const PixelWindow& window
                                                        DepthMeeting meeting, const float* uv, int samples) const {
     const State& s = *state_;
     const auto* plane = std::get_if<const DepthPlane*>(&depth);
-    const SecondOrderInstant& bent = s.reference();
+    const BentRays& bent = s.reference();
     return sample_errors(choose_samples(window, depth, uv, samples), [&](const SamplePixel& p) {
         const PixelWindow pixel{p.x, p.y, 1, 1};
         BentPixel judge = bent_pixel(bent, s.camera, p.x, p.y, plane ? s.farthest : p.depth);
         constexpr float kUnknown = std::numeric_limits<float>::infinity();
         if (judge.lost_at < p.depth) return Shift{kUnknown, kUnknown};
-        const std::vector<Band> bands{std::move(judge.band)};
+        const std::vector<DisplacementGrid> grids{std::move(judge.grid)};
         // the bent ray has passed over the surfaces: mirages only tell which pixels they move
         std::span<const Mirage> mirages = s.mirages_on(pixel);
-        BandRows row;
-        row.start(bands, p.y, mirages, 0);
-        if (row.mirage_moves(p.x)) row.end_at(s.meeting_with_surface(row, bands.front().depths, p.x, p.y));
-        if (plane && s.falls_through(row, **plane, p)) row.start(bands, p.y, mirages = {});
+        GridRows row;
+        row.start(grids, p.y, mirages, 0);
+        if (row.mirage_moves(p.x)) row.end_at(s.meeting_with_surface(row, grids.front().depths, p.x, p.y));
+        if (plane && s.falls_through(row, **plane, p)) row.start(grids, p.y, mirages = {});
         std::array<float, 2> d{};
         if (plane) {
-            MeetTile(**plane, pixel, meeting, s.reach(bands, {}, pixel), mirages).row(row, p.y, d.data());
+            TileMeeting(**plane, pixel, meeting, s.reach(grids, {}, pixel), mirages).row(row, p.y, d.data());
             const bool perspective = s.camera.projection == Projection::Perspective;
             if (!row.mirage_moves(p.x)) {
-                const Shift smooth = meet_surface(row, **plane, perspective, p.x, p.y, {d[0], d[1]});
+                const Shift smooth = meet_smooth_surface(row, **plane, perspective, p.x, p.y, {d[0], d[1]});
                 d = {smooth.x, smooth.y};
             }
         } else {
@@ -356,7 +359,7 @@ Displacer::Instant Displacer::at(double frame, double nearest, double farthest, 
     if (media.second_order() && !state->own.empty())
         state->joint.push_back(media.together(state->own, state->camera, t, nearest, farthest, gain, false));
     for (const LayerInstant& layer : state->bending())
-        state->blank.push_back(blank_bands(layer, state->camera, nearest, farthest));
+        state->blank.push_back(blank_grids(layer, state->camera, nearest, farthest));
     for (const auto& [medium, spec] : media.surfaces()) {
         state->mirages.emplace_back(spec, media.law(), shot_->scene.optics.exaggeration,
                                     shot_->scene.optics.ray_equation, state->camera, farthest,

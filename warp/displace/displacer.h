@@ -1,6 +1,6 @@
 /// Displacement maps of a scene: media × camera × depth → (dx, dy) in pixels, for any frame, at random.
 ///
-///     out(p) = in(p + d(p)),   d = f_px x1⊥(D)/D        (PHYSICS 6)
+///     out(p) = in(p + d(p)),   d = f_px x1⊥(D)/D        (PHYSICS.md#first-order)
 ///
 /// A Displacer is made once a shot and is immutable; at(F) prepares an instant (spectra summed over κ, transformed);
 /// Instant::map fills a window of pixels. Frame F depends on the scene, its settings and F alone: not on other frames,
@@ -15,8 +15,8 @@
 #include <variant>
 #include <vector>
 
-#include "warp/displace/meet.h"
-#include "warp/displace/model.h"
+#include "warp/displace/depth/depth_meeting.h"
+#include "warp/displace/grid/model.h"
 #include "warp/scene/camera.h"
 #include "warp/scene/scene.h"
 
@@ -76,7 +76,7 @@ class Displacer {
     /// strength that the media have before any falloff. Gradient noise and blobs: estimated from kRmsRays rays.
     double expected_rms(double D) const;
 
-    /// Expected variance of the focusing of light from distance D (PHYSICS 6, last line), ∂d_x/∂x of the map, at the
+    /// Expected variance of the focusing of light from distance D (PHYSICS.md#focusing), ∂d_x/∂x of the map, at the
     /// strength that the media have before any falloff: near 1 rays fold. Gradient noise and blobs: estimated from
     /// pairs of pixels, those of blobs where blobs are. Mirages, which fold
     /// by nature, are not counted.

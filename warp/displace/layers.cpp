@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise/error.h"
-#include "noise/memory.h"
-#include "noise/portable_math.h"
-#include "noise/random.h"
-#include "noise/surface.h"
+#include "noise/base/error.h"
+#include "noise/base/memory.h"
+#include "noise/math/portable_math.h"
+#include "noise/math/random.h"
+#include "noise/surface/surface.h"
 #include "warp/scene/screen_view.h"
 
 namespace eikonal {
@@ -43,7 +43,7 @@ constexpr double kPartOfNoiseCell = 0.75;
 int spline_padding(const LatticeField& field, double allowed) {
     int padding = 1;
     for (const int p : {2, 3, 4}) {
-        if (snapshot_error(field, padding).slope <= allowed) break;
+        if (lattice_spline_error(field, padding).slope <= allowed) break;
         const auto finer = static_cast<std::size_t>(p);
         if (field.geometry().spatial_samples() * finer * finer * finer > kMostPadded) break;
         padding = p;
@@ -165,7 +165,7 @@ void MediaLayers::add(std::size_t i, const BlobsSpec& spec) {
 
 void MediaLayers::check_camera_stays_above(const SurfaceSpec& spec, const std::string& name) const {
     if (!camera_moves_) return;
-    const SurfaceLayer layer(spec, law_);
+    const SurfaceIndex layer(spec, law_);
     const auto [first, last] = path_.frames();
     for (double frame = first; frame <= last; ++frame)
         if (const double height = layer.height(path_.at(frame).position); !(height > 0))
@@ -188,7 +188,7 @@ void MediaLayers::add(std::size_t i, const SurfaceSpec& spec) {
                                      name, kMirageThreshold, deepest()));
         return;
     }
-    const SurfaceLayer layer(spec, law_);
+    const SurfaceIndex layer(spec, law_);
     const double height = layer.height(reference_.position);
     const double critical = layer.critical_slope(height, scene_.optics.exaggeration, scene_.optics.ray_equation);
     notes_.push_back(
@@ -212,8 +212,8 @@ void MediaLayers::add(std::size_t i, const ProfileSpec&) {
 }
 
 void MediaLayers::add_screens(std::size_t i, const TurbulenceSpec& spec) {
-    const ScreenView view = screen_view(reference_, settings_.width, settings_.height, scene_.optics.aperture,
-                                        settings_.far, settings_.fps);
+    const ShotView view = screen_view(reference_, settings_.width, settings_.height, scene_.optics.aperture,
+                                      settings_.far, settings_.fps);
     std::vector<ScreenGeometry> geometry = layout_screens(spec, view);
     check_screens(spec, geometry, memory_limit());
     const ScreenGeometry middle = geometry[geometry.size() / 2];
@@ -359,7 +359,7 @@ void MediaLayers::add_lattice(std::size_t i, const TurbulenceSpec& spec) {
     const double allowed = second_order() ? kSecondOrderSplineError : kFirstOrderSplineError;
     if (stepped) {
         layer.padding = layer.ray_padding = spline_padding(field, allowed);
-        const SnapshotError error = snapshot_error(field, layer.padding);
+        const SplineError error = lattice_spline_error(field, layer.padding);
         if (error.slope > allowed)
             notes_.push_back(fmt::format(
                 "medium.{}: too large a lattice for a finer spline, whose force is off by {:.2g} of its rms", i,

@@ -20,16 +20,16 @@
 #include <variant>
 #include <vector>
 
-#include "noise/blobs.h"
-#include "noise/refractivity.h"
-#include "noise/screens.h"
-#include "warp/displace/blob_bends.h"
-#include "warp/displace/first_order.h"
-#include "warp/displace/lattice_tables.h"
-#include "warp/displace/mirage.h"
-#include "warp/displace/model.h"
-#include "warp/displace/second_order.h"
-#include "warp/displace/thin_screens.h"
+#include "noise/blobs/blobs.h"
+#include "noise/medium/refractivity.h"
+#include "noise/turbulence/screens/screens.h"
+#include "warp/displace/grid/model.h"
+#include "warp/displace/media/blobs/seen_blobs.h"
+#include "warp/displace/media/surface/mirage.h"
+#include "warp/displace/models/first_order.h"
+#include "warp/displace/models/lattice_tables.h"
+#include "warp/displace/models/second_order.h"
+#include "warp/displace/models/thin_screens.h"
 #include "warp/scene/camera.h"
 
 namespace eikonal {
@@ -43,15 +43,16 @@ struct MediumLayer {
     double constant = 0;  ///< c of `table`
     int padding = 1;      ///< of the splines of a lattice
     int ray_padding = 1;  ///< of the spline that rays of second-order go through
-    /// SnapshotError::bend, where map and rays go through the same spline.
+    /// SplineError::bend, where map and rays go through the same spline.
     double bend_error = 0;
 };
 
 /// A layer frozen at one time, or all of them as one.
-using LayerInstant = std::variant<ScreensInstant, TablesInstant, FirstOrderInstant, BlobBends, SecondOrderInstant>;
+using LayerInstant = std::variant<ThinScreens, DisplacementTables, FirstOrderRays, SeenBlobs, BentRays>;
 
-/// Empty bands for a layer's instant; blobs have theirs made tile by tile.
-std::vector<Band> blank_bands(const LayerInstant& layer, const Camera& camera, double nearest, double farthest);
+/// Empty grids for a layer's instant; blobs have theirs made tile by tile.
+std::vector<DisplacementGrid> blank_grids(const LayerInstant& layer, const Camera& camera, double nearest,
+                                          double farthest);
 
 class MediaLayers {
   public:
@@ -61,7 +62,7 @@ class MediaLayers {
     /// Heated or cooled surfaces and their index in Scene::media.
     const std::vector<std::pair<std::size_t, SurfaceSpec>>& surfaces() const { return surfaces_; }
     /// The same, in that order.
-    const std::vector<SurfaceLayer>& surface_layers() const { return surface_layers_; }
+    const std::vector<SurfaceIndex>& surface_layers() const { return surface_layers_; }
     const IndexLaw& law() const { return law_; }
 
     LayerInstant instant(const MediumLayer& layer, const Camera& camera, double t, double nearest, double farthest,
@@ -74,13 +75,13 @@ class MediaLayers {
     /// Rays through the sum of the layers: the nodes' rays of second-order or, if `reference`, through the surfaces,
     /// too, and in finer steps than second-order's own if that is the model: what any model is judged by. own:
     /// instants() with the same arguments. gain multiplies every n - n_ambient but the surfaces'. This must outlive it.
-    SecondOrderInstant together(const std::vector<LayerInstant>& own, const Camera& camera, double t, double nearest,
-                                double farthest, double gain, bool reference) const;
+    BentRays together(const std::vector<LayerInstant>& own, const Camera& camera, double t, double nearest,
+                      double farthest, double gain, bool reference) const;
 
     /// Variance of |d| [px²] that a layer is expected to have for objects at axial distance D, before any falloff, over
     /// pixels and time; of many blobs at the shot's beginning only where a rough figure will do.
     double expected_variance(const MediumLayer& layer, double D, bool rough = false) const;
-    /// Variance of ∂d_x/∂x of a layer's map at axial distance D (PHYSICS 6, last line), before any falloff: of lattices
+    /// Variance of ∂d_x/∂x of a layer's map at axial distance D (PHYSICS.md#focusing), before any falloff: of lattices
     /// as for rays along their axis nearest to the view, of gradient noise and blobs from neighbouring pixels.
     double focusing_variance(const MediumLayer& layer, double D) const;
     /// Bytes of one instant of everything, about.
@@ -142,7 +143,7 @@ class MediaLayers {
     IndexLaw law_;
     std::vector<MediumLayer> layers_;
     std::vector<std::pair<std::size_t, SurfaceSpec>> surfaces_;
-    std::vector<SurfaceLayer> surface_layers_;
+    std::vector<SurfaceIndex> surface_layers_;
     std::vector<std::string> surface_names_;  ///< for messages
     std::vector<Mirage> reference_mirages_;   ///< as the reference camera sees them
     std::vector<std::string> notes_, warnings_;

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise/portable_math.h"
+#include "noise/math/portable_math.h"
 #include "warp/displace/layers.h"
 
 namespace eikonal {
@@ -12,10 +12,10 @@ constexpr int kMostFirstOrderDepths = 33;
 constexpr double kNearestLayer = 0.1;
 
 /// Layers of the first-order model: evenly spaced in the logarithm, a step or two apart where that is not too many.
-Band first_order_band(const FirstOrderInstant& model, const Camera& camera, double nearest, double farthest) {
-    Band band;
-    band.perspective = camera.projection == Projection::Perspective;
-    band.interpolation = DepthInterpolation::Hermite;
+DisplacementGrid first_order_grid(const FirstOrderRays& model, const Camera& camera, double nearest, double farthest) {
+    DisplacementGrid grid;
+    grid.perspective = camera.projection == Projection::Perspective;
+    grid.interpolation = DepthInterpolation::Hermite;
     nearest = std::min(std::max(nearest, kNearestLayer / model.cells_along(camera.forward)), farthest);
     if (farthest > nearest) {
         const double wanted = (farthest - nearest) * model.cells_along(camera.forward) / 2;
@@ -24,16 +24,16 @@ Band first_order_band(const FirstOrderInstant& model, const Camera& camera, doub
         for (int i = 0; i <= intervals; ++i) {
             // near objects need finer layers, their angles being the larger
             const double t = static_cast<double>(i) / intervals;
-            band.depths.push_back(i == 0           ? nearest
+            grid.depths.push_back(i == 0           ? nearest
                                   : i == intervals ? farthest
                                                    : nearest * portable::pow(farthest / nearest, t));
         }
-        band.depths.erase(std::unique(band.depths.begin(), band.depths.end()), band.depths.end());
+        grid.depths.erase(std::unique(grid.depths.begin(), grid.depths.end()), grid.depths.end());
     } else {
-        band.depths = {nearest};
+        grid.depths = {nearest};
     }
-    band.spacing = node_spacing(model.finest_cell() * camera.f_px / (band.perspective ? farthest : 1.0));
-    return band;
+    grid.spacing = node_spacing(model.finest_cell() * camera.f_px / (grid.perspective ? farthest : 1.0));
+    return grid;
 }
 
 /// Nodes and layers of second-order: as fine as every layer's own.
@@ -56,12 +56,13 @@ struct Grid {
 
 }  // namespace
 
-std::vector<Band> blank_bands(const LayerInstant& layer, const Camera& camera, double nearest, double farthest) {
-    if (const auto* screens = std::get_if<ScreensInstant>(&layer)) return screens->bands(camera, nearest, farthest);
-    if (const auto* tables = std::get_if<TablesInstant>(&layer)) return {tables->band(camera)};
-    if (const auto* rays = std::get_if<FirstOrderInstant>(&layer))
-        return {first_order_band(*rays, camera, nearest, farthest)};
-    if (const auto* bent = std::get_if<SecondOrderInstant>(&layer)) return {bent->band(camera)};
+std::vector<DisplacementGrid> blank_grids(const LayerInstant& layer, const Camera& camera, double nearest,
+                                          double farthest) {
+    if (const auto* screens = std::get_if<ThinScreens>(&layer)) return screens->grids(camera, nearest, farthest);
+    if (const auto* tables = std::get_if<DisplacementTables>(&layer)) return {tables->grid(camera)};
+    if (const auto* rays = std::get_if<FirstOrderRays>(&layer))
+        return {first_order_grid(*rays, camera, nearest, farthest)};
+    if (const auto* bent = std::get_if<BentRays>(&layer)) return {bent->grid(camera)};
     return {};
 }
 
@@ -69,15 +70,15 @@ LayerInstant MediaLayers::instant(const MediumLayer& layer, const Camera& camera
                                   double farthest, double gain) const {
     const double aperture = scene_.optics.aperture;
     if (const auto* cloud = std::get_if<BlobCloud>(&layer.field))
-        return BlobBends(cloud->at(t), strength_, camera, farthest, gain);
+        return SeenBlobs(cloud->at(t), strength_, camera, farthest, gain);
     if (const auto* screens = std::get_if<ScreenField>(&layer.field))
-        return ScreensInstant{screens->at(t), reference_, strength_,
-                              std::get<TurbulenceSpec>(scene_.media[layer.medium]).falloff};
+        return ThinScreens{screens->at(t), reference_, strength_,
+                           std::get<TurbulenceSpec>(scene_.media[layer.medium]).falloff};
     const double way = std::max(farthest, settings_.far);
     if ((camera_moves_ || is_beyond(farthest, settings_.far)) && layer.model >= Model::FirstOrder)
         check_frame_steps(layer.medium, layer.cell, camera, way);
     if (const auto* noise = std::get_if<GradientNoiseField>(&layer.field))
-        return FirstOrderInstant{
+        return FirstOrderRays{
             GradientNoiseInstant{noise, t}, strength_, layer.cell, aperture, settings_.far, settings_.cancelled};
     const auto& field = std::get<LatticeField>(layer.field);
     const PathRays rays = nearest_axis(camera, aperture);
@@ -93,12 +94,12 @@ LayerInstant MediaLayers::instant(const MediumLayer& layer, const Camera& camera
             return exact_instant(field, t, rays, spectral_depths(field, rays, nearest, farthest),
                                  DepthInterpolation::Hermite, strength_, layer.padding);
         default:
-            return FirstOrderInstant{std::make_shared<const LatticeSnapshot>(field, t, layer.padding),
-                                     strength_,
-                                     layer.cell,
-                                     aperture,
-                                     settings_.far,
-                                     settings_.cancelled};
+            return FirstOrderRays{std::make_shared<const LatticeInstant>(field, t, layer.padding),
+                                  strength_,
+                                  layer.cell,
+                                  aperture,
+                                  settings_.far,
+                                  settings_.cancelled};
     }
 }
 
@@ -110,50 +111,51 @@ std::vector<LayerInstant> MediaLayers::instants(const Camera& camera, double t, 
 }
 
 FieldPart MediaLayers::part_of(const MediumLayer& layer, const LayerInstant& instant, double t) const {
-    if (const auto* bends = std::get_if<BlobBends>(&instant))
+    if (const auto* bends = std::get_if<SeenBlobs>(&instant))
         return {BlobsPart{bends->blobs(), second_order() ? kRayBlobReach : kJudgedBlobReach}};
     if (const auto* field = std::get_if<ScreenField>(&layer.field)) {
-        const auto& screens = std::get<ScreensInstant>(instant);
-        const ScreenFrame frame{reference_.position, reference_.right, reference_.up, reference_.forward, {}};
+        const auto& screens = std::get<ThinScreens>(instant);
+        const ShotFrame frame{reference_.position, reference_.right, reference_.up, reference_.forward, {}};
         return {ScreensPart{field, screens.screens, frame, screens.falloff}};
     }
     if (const auto* noise = std::get_if<GradientNoiseField>(&layer.field)) return {NoisePart{noise, t}};
     const auto& field = std::get<LatticeField>(layer.field);
-    if (const auto* rays = std::get_if<FirstOrderInstant>(&instant))
-        return {LatticePart{&field, std::get<std::shared_ptr<const LatticeSnapshot>>(rays->medium), layer.bend_error}};
+    if (const auto* rays = std::get_if<FirstOrderRays>(&instant))
+        return {LatticePart{&field, std::get<std::shared_ptr<const LatticeInstant>>(rays->medium), layer.bend_error}};
     Padding padding{layer.ray_padding, layer.ray_padding, layer.ray_padding};
     // Along an axis that every ray runs along, the spline's error averages out over the way.
     if (layer.model == Model::Spectral) padding[static_cast<std::size_t>(nearest_axis(reference_, 0).axis)] = 1;
-    return {LatticePart{&field, std::make_shared<const LatticeSnapshot>(field, t, padding)}};
+    return {LatticePart{&field, std::make_shared<const LatticeInstant>(field, t, padding)}};
 }
 
-SecondOrderInstant MediaLayers::together(const std::vector<LayerInstant>& own, const Camera& camera, double t,
-                                         double nearest, double farthest, double gain, bool reference) const {
+BentRays MediaLayers::together(const std::vector<LayerInstant>& own, const Camera& camera, double t, double nearest,
+                               double farthest, double gain, bool reference) const {
     std::vector<FieldPart> parts;
     Grid grid;
     double cell = std::numeric_limits<double>::infinity(), step = second_order() && reference ? kFineStep : kStep;
     const bool blobs_alone = std::all_of(
-        own.begin(), own.end(), [](const LayerInstant& layer) { return std::holds_alternative<BlobBends>(layer); });
+        own.begin(), own.end(), [](const LayerInstant& layer) { return std::holds_alternative<SeenBlobs>(layer); });
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         const MediumLayer& layer = layers_[i];
         parts.push_back(part_of(layer, own[i], t));
         parts.back().weight = gain;
         if (blobs_alone) std::get<BlobsPart>(parts.back().medium).step = step;
         if (std::holds_alternative<GradientNoiseField>(layer.field)) step = std::min(step, kNoiseStep);
-        if (const auto* blobs = std::get_if<BlobBends>(&own[i]))
+        if (const auto* blobs = std::get_if<SeenBlobs>(&own[i]))
             grid.add(blobs->finest_spacing(), blobs->layers(nearest, farthest));
         else
-            for (const Band& band : blank_bands(own[i], camera, nearest, farthest)) grid.add(band.spacing, band.depths);
+            for (const DisplacementGrid& own_grid : blank_grids(own[i], camera, nearest, farthest))
+                grid.add(own_grid.spacing, own_grid.depths);
         // thin screens are averaged over the aperture as they are made, and blobs are large
         if (std::holds_alternative<LatticeField>(layer.field) ||
             std::holds_alternative<GradientNoiseField>(layer.field))
             cell = std::min({cell, layer.cell.x, layer.cell.y, layer.cell.z});
     }
     if (reference)
-        for (const SurfaceLayer& surface : surface_layers_) parts.push_back({SurfacePart{&surface, kSurfaceStep}});
+        for (const SurfaceIndex& surface : surface_layers_) parts.push_back({SurfacePart{&surface, kSurfaceStep}});
     if (blobs_alone && !own.empty()) step = 1;  // theirs, found in one search
     grid.finish(nearest, farthest);
-    return {FieldInstant(scene_.optics, std::move(parts)),    step, grid.spacing,  std::move(grid.depths),
+    return {AirInstant(scene_.optics, std::move(parts)),      step, grid.spacing,  std::move(grid.depths),
             std::isfinite(cell) ? scene_.optics.aperture : 0, cell, settings_.far, settings_.cancelled};
 }
 

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "noise/random.h"
+#include "noise/math/random.h"
 #include "warp/displace/layers.h"
 
 namespace eikonal {
@@ -44,11 +44,11 @@ struct PixelPair {
         Shift d;
         double slope;
     };
-    Shifts shifts(const std::vector<Band>& bands, double D) const {
-        BandRows row;
-        row.start(bands, window.y0);
+    Shifts shifts(const std::vector<DisplacementGrid>& grids, double D) const {
+        GridRows row;
+        row.start(grids, window.y0);
         const Shift d = row.at(window.x0, D);
-        if (window.height == 2) row.start(bands, window.y0 + 1);
+        if (window.height == 2) row.start(grids, window.y0 + 1);
         const Shift next = row.at(window.x0 + window.width - 1, D);
         return {d, window.width == 2 ? double{next.x} - d.x : double{next.y} - d.y};
     }
@@ -150,15 +150,15 @@ double MediaLayers::blob_variance(const MediumLayer& layer, double D, int instan
         check_cancelled(settings_.cancelled);
         const double t = tried == 0 ? 0 : 1e3 * stream.uniform((1ULL << 32) + static_cast<std::uint64_t>(tried));
         const LayerInstant instant = this->instant(layer, reference_, t, D, D, 1);
-        const auto& bends = std::get<BlobBends>(instant);
+        const auto& bends = std::get<SeenBlobs>(instant);
         if (!bends.blobs().empty()) ++with_blobs;
         if (bends.seen().empty()) continue;
         const BlobPixels pixels(bends.seen(), reference_, {0, 0, settings_.width, settings_.height});
         for (int i = 0; i < each; ++i) {
             const auto [x, y, weight] = pixels.draw(stream, tried * each + i);
-            const Band band = bends.every_pixel({x, y, 1, 1}, D);
-            BandRow row;
-            row.start(band, y);
+            const DisplacementGrid grid = bends.every_pixel({x, y, 1, 1}, D);
+            GridRow row;
+            row.start(grid, y);
             const Shift d = row.at(x, D);
             sum += weight * (double{d.x} * d.x + double{d.y} * d.y) / each;
         }
@@ -179,11 +179,11 @@ MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& la
         const double t = i == 0 ? 0 : 1e3 * stream.uniform(static_cast<std::uint64_t>(i));
         const LayerInstant instant = this->instant(layer, reference_, t, D, D, 1);
         const PixelPair pair(x, y, i % 2 == 0);
-        std::vector<Band> bands = blank_bands(instant, reference_, D, D);
-        bands.front().spacing = 1;
-        bands.front().cover(pair.window);
-        std::get<FirstOrderInstant>(instant).fill(bands.front(), reference_);
-        const auto [d, slope] = pair.shifts(bands, D);
+        std::vector<DisplacementGrid> grids = blank_grids(instant, reference_, D, D);
+        grids.front().spacing = 1;
+        grids.front().cover(pair.window);
+        std::get<FirstOrderRays>(instant).fill(grids.front(), reference_);
+        const auto [d, slope] = pair.shifts(grids, D);
         sum.shift += (double{d.x} * d.x + double{d.y} * d.y) / rays;
         sum.slope += slope * slope / rays;
     }
@@ -192,7 +192,7 @@ MediaLayers::SampledVariance MediaLayers::sampled_variance(const MediumLayer& la
 
 double MediaLayers::blob_focusing(const MediumLayer& layer, double D) const {
     const LayerInstant instant = this->instant(layer, reference_, 0, D, D, 1);
-    const auto& bends = std::get<BlobBends>(instant);
+    const auto& bends = std::get<SeenBlobs>(instant);
     const std::vector<SeenBlob>& blobs = bends.seen();
     if (blobs.empty()) return 0;
     const RandomStream stream(1, "focusing of blobs");

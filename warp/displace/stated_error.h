@@ -8,13 +8,13 @@
 /// meets, not of the air, and where edges take near a twentieth of the picture, they alone would make its 95th
 /// percentile. Each sample's own ray goes through the sum of all media, surfaces included, as second-order's nodes do
 /// but without interpolation between nodes (bent_pixel), and meets the depth buffer in the same way as the map, but
-/// where depth is smooth the surface through its pixels and no facet (meet_surface). *added*
+/// where depth is smooth the surface through its pixels and no facet (meet_smooth_surface). *added*
 ///
 /// Where a ray ends on a heated surface and the depth buffer has a hole, it is followed through the plane, as the
 /// tracer follows it: a map ends it there.
 ///
 /// First and second order and their judge go through the same splines of a lattice; what those are off by is drawn for
-/// each sample from what is expected (FieldInstant::interpolation).
+/// each sample from what is expected (AirInstant::interpolation).
 ///
 /// So the figure holds the model's own approximations: the order of the perturbation, tables, nodes, depths between
 /// layers and between pixels, and how media act on each other. It does not hold what no map can mend: that a plate does

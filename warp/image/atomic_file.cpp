@@ -17,7 +17,7 @@
 #include <system_error>
 #include <utility>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal {
 namespace fs = std::filesystem;

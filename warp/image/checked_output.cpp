@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal {
 namespace {

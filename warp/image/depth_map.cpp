@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal {
 namespace {

@@ -25,12 +25,9 @@
 
 #include "warp/image/picture.h"
 #include "warp/image/plane.h"
+#include "warp/pixels/depth_range.h"
 
 namespace eikonal {
-
-inline constexpr float kNearestDepth = 1e-6f;  ///< [m]
-inline constexpr float kInfiniteDepth = 1e9f;  ///< [m]
-inline constexpr double kDefaultFar = 1000;    ///< distance of the background where nothing states it [m]
 
 enum class DepthType { Z, Ray, Inverse };
 

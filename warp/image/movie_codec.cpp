@@ -10,7 +10,7 @@ extern "C" {
 #include <array>
 #include <string_view>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal::libav {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal::libav {
 

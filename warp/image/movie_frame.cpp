@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "noise/dispatch.h"
+#include "noise/base/instruction_sets.h"
 #include "warp/image/movie_colour.h"
-#include "warp/image/rows.h"
+#include "warp/pixels/rows.h"
 
 namespace eikonal {
 

@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "warp/image/linear_image.h"
+#include "warp/pixels/linear_image.h"
 
 namespace eikonal {
 

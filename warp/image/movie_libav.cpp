@@ -15,7 +15,7 @@ extern "C" {
 #include <string_view>
 #include <system_error>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal::libav {
 

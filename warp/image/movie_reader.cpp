@@ -15,7 +15,7 @@ extern "C" {
 #include <set>
 #include <utility>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/image/movie_libav.h"
 
 namespace eikonal {

@@ -10,7 +10,7 @@ extern "C" {
 #include <map>
 #include <stdexcept>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/image/atomic_file.h"
 #include "warp/image/movie_codec.h"
 #include "warp/image/movie_copy.h"

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "warp/image/rows.h"
+#include "warp/pixels/rows.h"
 
 namespace eikonal {
 namespace {

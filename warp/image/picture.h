@@ -31,8 +31,8 @@
 #include <variant>
 #include <vector>
 
-#include "warp/image/linear_image.h"
 #include "warp/image/transfer.h"
+#include "warp/pixels/linear_image.h"
 
 namespace eikonal {
 

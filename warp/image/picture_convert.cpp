@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/image/channels.h"
 #include "warp/image/picture.h"
 

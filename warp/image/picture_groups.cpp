@@ -6,7 +6,7 @@
 
 #include "warp/image/picture.h"
 #include "warp/image/pixel_codec.h"
-#include "warp/image/rows.h"
+#include "warp/pixels/rows.h"
 
 namespace eikonal {
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <system_error>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/image/channels.h"
 #include "warp/image/file_error.h"
 #include "warp/image/orientation.h"

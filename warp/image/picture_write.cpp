@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/image/atomic_file.h"
 #include "warp/image/checked_output.h"
 #include "warp/image/file_error.h"

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "noise/dispatch.h"
+#include "noise/base/instruction_sets.h"
 
 namespace eikonal {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/image/pixel_codec.h"
 
 namespace eikonal {

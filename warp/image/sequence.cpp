@@ -11,7 +11,7 @@
 #include <system_error>
 #include <unordered_set>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal {
 namespace fs = std::filesystem;

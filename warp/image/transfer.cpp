@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise/dispatch.h"
-#include "noise/portable_math.h"
+#include "noise/base/instruction_sets.h"
+#include "noise/math/portable_math.h"
 
 namespace eikonal {
 namespace {

@@ -13,11 +13,10 @@
 ///   KodakLog  Cineon/DPX printing density: black 95, white 685 of 1023, gamma 0.6; not odd: code 0 is slightly
 ///             negative light; codes are limited to 2
 ///
-/// Two forms. The free functions evaluate the formula (noise/portable_math.h) and round once. TransferCurve tabulates
-/// it: within kCurveError of the formula (relative to the larger of the value and 1e-3), exact for every 8- and 16-bit
-/// code in the direction to linear, and code -> linear -> code (rounded to nearest) is the
-/// identity for all of them. Both give the same bits
-/// on every processor. NaN gives NaN from the formula and zero from the tables.
+/// Two forms. The free functions evaluate the formula (noise/math/portable_math.h) and round once. TransferCurve
+/// tabulates it: within kCurveError of the formula (relative to the larger of the value and 1e-3), exact for every 8-
+/// and 16-bit code in the direction to linear, and code -> linear -> code (rounded to nearest) is the identity for all
+/// of them. Both give the same bits on every processor. NaN gives NaN from the formula and zero from the tables.
 #pragma once
 
 #include <array>

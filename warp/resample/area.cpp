@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise/dispatch.h"
+#include "noise/base/instruction_sets.h"
 #include "warp/resample/separable.h"
 
 namespace eikonal::resampling {

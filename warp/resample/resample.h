@@ -18,10 +18,11 @@
 ///  - Area: the mean of the source over the pixel's footprint, see area.h. Weights are not negative. Where the map
 ///    shifts or magnifies it is Bilinear.
 /// Cubic and Lanczos3 have negative lobes: a white pixel over black is ringed by values down to -0.075 and -0.15. A
-/// headlight a hundred times white would be ringed in black, so a result never falls below the smallest of its four nearest
-/// samples by more than cubic_undershoot or lanczos3_undershoot: any light rings as white does. Nothing else is clamped: a
-/// picture (or alpha) within 0...1 may exceed 1 by cubic_overshoot and lanczos3_overshoot at the worst. Bilinear and Area
-/// never leave its range. Values stay finite for finite input below 1e38 in magnitude (Bilinear, Area: below 3.4e38).
+/// headlight a hundred times white would be ringed in black, so a result never falls below the smallest of its four
+/// nearest samples by more than cubic_undershoot or lanczos3_undershoot: any light rings as white does. Nothing else is
+/// clamped: a picture (or alpha) within 0...1 may exceed 1 by cubic_overshoot and lanczos3_overshoot at the worst.
+/// Bilinear and Area never leave its range. Values stay finite for finite input below 1e38 in magnitude (Bilinear,
+/// Area: below 3.4e38).
 ///
 /// Alpha must be premultiplied, as in the files. Channels that are not colour are never filtered: nearest_source().
 /// Bytes do not depend on the number of threads, on the processor, or on how an image is cut into windows (given
@@ -32,7 +33,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "warp/image/linear_image.h"
+#include "warp/pixels/linear_image.h"
 
 namespace eikonal {
 

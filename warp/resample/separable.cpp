@@ -1,6 +1,6 @@
 #include "warp/resample/separable.h"
 
-#include "noise/dispatch.h"
+#include "noise/base/instruction_sets.h"
 
 namespace eikonal::resampling {
 namespace {
@@ -100,8 +100,9 @@ EIKONAL_INLINE Pixel sample_inside(const Source& source, const Span& span, int i
     const Pixel value = weigh<taps>(columns, span.wx, i);
     if constexpr (taps == 2) return value;
     const float* inner = source.at(span.x[i], span.y[i], channels);
-    const Pixel nearest = smaller(smaller(load<channels>(inner), load<channels>(inner + source.stride)),
-                                  smaller(load<channels>(inner + channels), load<channels>(inner + source.stride + channels)));
+    const Pixel nearest =
+        smaller(smaller(load<channels>(inner), load<channels>(inner + source.stride)),
+                smaller(load<channels>(inner + channels), load<channels>(inner + source.stride + channels)));
     return limit_undershoot<taps>(value, nearest);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "noise/dispatch.h"
+#include "noise/base/instruction_sets.h"
 
 namespace eikonal::resampling {
 namespace {

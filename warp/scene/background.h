@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "warp/image/depth_map.h"
+#include "warp/pixels/depth_range.h"
 #include "warp/scene/scene.h"
 
 namespace eikonal {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "noise/error.h"
-#include "noise/portable_math.h"
+#include "noise/base/error.h"
+#include "noise/math/portable_math.h"
 #include "warp/scene/text_file.h"
 
 namespace eikonal {

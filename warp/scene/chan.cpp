@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "noise/error.h"
-#include "noise/portable_math.h"
+#include "noise/base/error.h"
+#include "noise/math/portable_math.h"
 #include "warp/scene/camera.h"
 #include "warp/scene/message.h"
 

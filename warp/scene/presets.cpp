@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/scene/message.h"
 #include "warp/scene/scene.h"
 

@@ -1,6 +1,6 @@
 #include "warp/scene/scene.h"
 
-#include "noise/random.h"
+#include "noise/math/random.h"
 #include "warp/scene/schema.h"
 #include "warp/scene/settings.h"
 #include "warp/scene/text_file.h"

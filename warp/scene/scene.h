@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "noise/media.h"
+#include "noise/medium/media.h"
 
 namespace eikonal {
 

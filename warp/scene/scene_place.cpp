@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/scene/settings.h"
 #include "warp/scene/table.h"
 #include "warp/scene/text_file.h"

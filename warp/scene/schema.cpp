@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "noise/blobs.h"
-#include "noise/refractivity.h"
+#include "noise/blobs/blobs.h"
+#include "noise/medium/refractivity.h"
 #include "warp/scene/camera.h"
 
 // names() and keys() are found by the templates of table.h through the types of the scene, hence live in their

@@ -2,13 +2,13 @@
 /// tracer.
 #pragma once
 
-#include "noise/screen_layout.h"
+#include "noise/medium/shot_frame.h"
 #include "warp/scene/camera.h"
 
 namespace eikonal {
 
-/// camera: the shot's reference camera. width, height: of its picture [px]. aperture, far [m], fps: as in ScreenView.
-inline ScreenView screen_view(const Camera& camera, int width, int height, double aperture, double far, double fps) {
+/// camera: the shot's reference camera. width, height: of its picture [px]. aperture, far [m], fps: as in ShotView.
+inline ShotView screen_view(const Camera& camera, int width, int height, double aperture, double far, double fps) {
     return {camera.projection == Projection::Perspective,
             far,
             0.5 * width / camera.f_px,

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 #include "warp/scene/message.h"
 #include "warp/scene/table.h"
 #include "warp/scene/toml_guard.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal::scene_file {
 

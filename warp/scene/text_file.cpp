@@ -6,7 +6,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "noise/error.h"
+#include "noise/base/error.h"
 
 namespace eikonal::scene_file {
 

@@ -1,0 +1,59 @@
+/// The command line of eikonal-trace: declared, parsed and checked in one place.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "reference/compare/comparison.h"
+#include "reference/trace/render.h"
+
+namespace eikonal::reference {
+
+/// What every command takes.
+struct CommonOptions {
+    std::filesystem::path scene;
+    std::vector<std::string> settings;  ///< --set
+    std::optional<std::uint64_t> seed;
+    int threads = 0;  ///< 0: all
+};
+
+struct RenderOptions {
+    CommonOptions common;
+    std::filesystem::path output;
+    RenderSettings render;
+    std::string frames;  ///< empty: the scene's first
+    bool compact = false, overwrite = false, verbose = false, explain = false;
+};
+
+struct PathOptions {
+    CommonOptions common;
+    std::optional<std::filesystem::path> output;  ///< none: standard output
+    dvec3 origin{0}, direction{0, 0, -1};
+    double length = 0;  ///< of u [m]
+    RaySettings rays;
+    double tolerance = 1e-9;  ///< [m]
+    std::optional<int> frame;
+};
+
+struct CompareOptions {
+    CommonOptions common;
+    std::filesystem::path output;  ///< a folder
+    CompareSettings compare;
+    std::string frames;  ///< empty: the scene's first
+    bool overwrite = false;
+};
+
+/// What is printed and no more: help, the version.
+struct Information {
+    std::string text;
+};
+
+using Command = std::variant<RenderOptions, PathOptions, CompareOptions, Information>;
+
+/// UserError: one line that names the option, the value, what is allowed.
+Command parse_options(int argc, const char* const* argv);
+
+}  // namespace eikonal::reference

@@ -1,0 +1,30 @@
+/// What `eikonal-trace compare` leaves in its folder:
+///     plate.FFFF.png  truth.FFFF.png  warp-MODEL.FFFF.png  error-MODEL.FFFF.png    of each frame; errors as colours
+///                                                              over their scale
+///     change-MODEL.FFFF.png      of each frame but the first: the error of the change of displacement since the frame
+///                                before it
+///     errors.csv  errors.txt     a row for each model (comparison_table.h)
+///     frontier.svg               error over time (frontier.h)
+///     index.html                 all of it on one page (comparison_page.h), with the pictures of every frame; made
+///     last
+///
+/// Every file appears whole or not at all (warp/image/atomic_file.h). FrameError.
+#pragma once
+
+#include <filesystem>
+
+#include "reference/compare/comparison.h"
+#include "reference/compare/comparison_page.h"
+
+namespace eikonal::reference {
+
+/// Writes a frame's pictures and gives them back for the page: plate, truth, then of each model the warp, the error and
+/// the error of the change.
+std::vector<PagePicture> write_pictures(const std::filesystem::path& folder, const Comparison& comparison,
+                                        const Comparer::Frame& frame);
+
+/// Tables, plot and page.
+void write_report(const std::filesystem::path& folder, const Comparison& comparison,
+                  const std::vector<PageFrame>& frames);
+
+}  // namespace eikonal::reference

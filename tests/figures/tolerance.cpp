@@ -1,0 +1,82 @@
+// What accuracy costs the tracer, as CSV: for samples' scenes and each tolerance, the processor time of a ray and the
+// largest error of its displacement, against the finest tolerance. Rebuilds reference/tolerance.png with
+// reference/tolerance.gp (reference/README.md).
+//
+// Rays are those of a grid of pixels' centres, traced one after the other; times are medians of kRuns runs. Rays that
+// see another object than at the finest tolerance, past an edge, have no common displacement and are left out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <glm/geometric.hpp>
+
+#include "reference/trace/render.h"
+
+int main(int argc, char** argv) {
+    using namespace eikonal;
+    using namespace eikonal::reference;
+    if (argc != 2) {
+        fmt::print(stderr, "usage: tolerance FOLDER_OF_SAMPLES > tolerance.csv\n");
+        return 2;
+    }
+    constexpr int kAcross = 18, kRuns = 3;
+    constexpr double kFinest = 1e-8;
+    const std::pair<std::string, std::vector<std::string>> scenes[] = {
+        {"mirage", {"medium.1="}}, {"fig5", {}}, {"fig6", {}}};
+    fmt::print("scene,tolerance,us,error_px,estimate_px,other_objects,steps\n");
+    for (const auto& [name, settings] : scenes) {
+        const Scene scene = read_scene(std::filesystem::path(argv[1]) / (name + ".toml"), settings, {});
+        const SceneAir air(scene, {});
+        const AirInstant field = air.at(scene.time.first_frame);
+        const Camera camera = air.path().reference();
+        const Geometry geometry(scene, camera.position);
+        const auto [width, height] = scene.camera.resolution.value();
+        std::vector<CameraRay> rays;
+        for (int j = 0; j < kAcross; ++j)
+            for (int i = 0; i < kAcross; ++i) {
+                rays.push_back(camera_ray(camera, (i + 0.5) * width / kAcross, (j + 0.5) * height / kAcross));
+                rays.back().direction = glm::normalize(rays.back().direction);
+            }
+        const auto follow = [&](double tolerance) {
+            TraceSettings trace = air.trace_settings(camera);
+            trace.sight = far_distance(scene);
+            trace.tolerance_px = tolerance;
+            std::vector<BentHit> ends;
+            for (const CameraRay& ray : rays)
+                ends.push_back(reference::trace(field, &geometry, ray.origin, ray.direction, trace));
+            return ends;
+        };
+        // Across the view, in pixels.
+        const auto shown = [&](const BentHit& end) {
+            dvec3 seen = end.hit ? end.at.x - camera.position : end.at.p;
+            if (camera.projection == Projection::Perspective) seen /= glm::dot(seen, camera.forward);
+            return camera.f_px * dvec2(glm::dot(seen, camera.right), glm::dot(seen, camera.up));
+        };
+        const std::vector<BentHit> exact = follow(kFinest);
+        for (double exponent = 0; exponent >= -6.01; exponent -= 0.5) {
+            const double tolerance = std::pow(10.0, exponent);
+            std::vector<double> times;
+            std::vector<BentHit> ends;
+            for (int run = 0; run < kRuns; ++run) {
+                const std::clock_t start = std::clock();
+                ends = follow(tolerance);
+                times.push_back(1e6 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+            }
+            std::nth_element(times.begin(), times.begin() + kRuns / 2, times.end());
+            double error = 0, estimate = 0, steps = 0;
+            int other = 0;
+            for (std::size_t i = 0; i < ends.size(); ++i) {
+                steps += ends[i].steps;
+                if (ends[i].hit != exact[i].hit || ends[i].surface.object != exact[i].surface.object) {
+                    ++other;
+                    continue;
+                }
+                error = std::max(error, glm::length(shown(ends[i]) - shown(exact[i])));
+                estimate = std::max(estimate, ends[i].error_px);
+            }
+            const double count = static_cast<double>(rays.size());
+            fmt::print("{},{:.3g},{:.4g},{:.3g},{:.3g},{},{:.1f}\n", name, tolerance, times[kRuns / 2] / count, error,
+                       estimate, other, steps / count);
+        }
+    }
+}
