@@ -1,5 +1,7 @@
-/// The most recently used of values that are costly to make and pure functions of a whole number: what is found here
-/// is what would have been made, so results never depend on it. Bounded, thread-safe.
+/// A thread-safe cache of costly values that are pure functions of a whole number.
+///
+/// A found value is the value that would have been made again. Results therefore never depend on what the cache holds.
+/// The cache drops the value that was used least recently when it is full. No function fails, except by std::bad_alloc.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +16,14 @@ namespace eikonal {
 template <class Value>
 class BoundedCache {
   public:
-    /// capacity >= 1: values kept.
+    /// capacity: the most values that are kept, >= 1.
     explicit BoundedCache(std::size_t capacity) : capacity_(capacity) {}
 
     struct Found {
         std::int64_t key = 0;
         std::shared_ptr<const Value> value;  ///< null: nothing found
     };
-    /// The value of the greatest key kept in [least, most].
+    /// The value of the greatest key in [least, most] that the cache holds.
     Found latest(std::int64_t least, std::int64_t most) const {
         const std::lock_guard lock(mutex_);
         Entry* best = nullptr;
@@ -32,7 +34,7 @@ class BoundedCache {
         return {best->key, best->value};
     }
 
-    /// Drops the value that was not asked for the longest, if there is no room.
+    /// Stores a value, unless the key is there already.
     void keep(std::int64_t key, std::shared_ptr<const Value> value) const {
         const std::lock_guard lock(mutex_);
         const auto same = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.key == key; });

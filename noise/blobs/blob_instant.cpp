@@ -14,7 +14,7 @@ namespace eikonal {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 16;
-/// Halving 2^32 balls goes no deeper, and each level leaves one node to come back to.
+/// Room of the stack: halving 2^32 balls goes no deeper, and each level leaves one node to come back to.
 constexpr std::size_t kDeepest = 40;
 
 bool inside(const dvec3& x, const dvec3& low, const dvec3& high) {
@@ -26,13 +26,13 @@ double distance_to_box(const dvec3& x, const dvec3& low, const dvec3& high) {
     return glm::length(d);
 }
 
-/// 1/d, large but finite for coordinates that do not change along it.
+/// 1/d. It is large but finite for coordinates that do not change along d.
 dvec3 inverse(const dvec3& d) {
     constexpr double kLarge = 1e300;
     return {d.x == 0 ? kLarge : 1 / d.x, d.y == 0 ? kLarge : 1 / d.y, d.z == 0 ? kLarge : 1 / d.z};
 }
 
-/// Way along d into a box; kNever if it is not met.
+/// Way along d into a box. kNever if the ray misses it.
 double way_into_box(const dvec3& x, const dvec3& inverse_d, const dvec3& low, const dvec3& high) {
     const dvec3 a = (low - x) * inverse_d, b = (high - x) * inverse_d;
     const dvec3 near = glm::min(a, b), far = glm::max(a, b);
@@ -57,7 +57,7 @@ BlobInstant::BlobInstant(std::span<const Blob> blobs, double reach, double step)
 void BlobInstant::build(std::uint32_t first, std::uint32_t last) {
     const std::size_t at = nodes_.size();
     Node node{dvec3(kNever), dvec3(-kNever), kNever, first, last - first, 0};
-    dvec3 least = node.low, most = node.high;  // of the centres
+    dvec3 least = node.low, most = node.high;  // bounds of the centres
     for (std::uint32_t i = first; i < last; ++i) {
         const Ball& ball = balls_[i];
         node.low = glm::min(node.low, ball.center - ball.reach);
@@ -175,7 +175,8 @@ double BlobInstant::longest_step(const dvec3& x) const {
                  });
 }
 
-/// Distance from a blob's centre [σ] beyond which it turns a ray by less: 2√π |n_j| b e^{-b²}, with b <= kBlobReach.
+/// Distance from a blob's centre [σ] beyond which every blob turns a ray by less than `turn`. A blob turns a ray that
+/// passes at distance b by 2√π |n_j| b e^{-b²}, with b <= kBlobReach.
 double BlobInstant::reach_of(double turn) const {
     constexpr double kTwoRootPi = 3.5449077018110318;
     const double ratio = kTwoRootPi * kBlobReach * strongest_ / turn;
@@ -194,7 +195,7 @@ double BlobInstant::longest_stride(const dvec3& x, const dvec3& d, double turn) 
         [&](const Ball& ball) {
             const dvec3 from = ball.center - x;
             const double sigma = ball.sigma, w = glm::dot(from, d), r2 = glm::dot(from, from), end = reach * sigma;
-            // the nearest that the ray comes from here on
+            // The least distance that the ray has from here on.
             if (!((w > 0 ? r2 - w * w : r2) < end * end)) return kNever;
             return std::max(kBlobStride * sigma, std::sqrt(r2) - sigma);
         });

@@ -17,11 +17,11 @@ using Wide3 = glm::vec<3, Wide>;
 static_assert(std::numeric_limits<Wide>::digits == 64 && std::numeric_limits<Wide>::max_exponent == 16384,
               "80-bit long double, as on x86-64");
 
-/// e^-t > 0 as a normal Wide needs t < 11355. Beyond the limit here no doubles n_j, b, u and 1/σ (each within 1e±324)
-/// make a product that a double can hold.
+/// e^-t is a normal Wide for t < 11355. Beyond the limit here, the product with any doubles n_j, b, u and 1/σ (each
+/// within 1e±324) is too small for a double.
 constexpr Wide kNegligibleExponent = 1.1e4L;
 
-/// e^-t for t >= 0 to about kExpError
+/// e^-t for t >= 0, to about kExpError.
 Wide exp_minus(Wide t) {
     if (t > kNegligibleExponent) return 0;
     constexpr Wide kLog2E = 1.442695040888963407359924681001892137L;
@@ -36,14 +36,14 @@ portable::GaussianTails tails(Wide x) {
     return portable::gaussian_tails(static_cast<double>(std::min(x, Wide{portable::kGaussianTailsLimit})));
 }
 
-/// The four integrals over [a, c] with σ = 1 and e^{-exponent} taken out; names as in BlobIntegrals.
+/// The four integrals over [a, c] for σ = 1, divided by e^{-exponent}. The names are those of BlobIntegrals.
 struct Profile {
     Wide i1, j2, e, g;  // dI1/du = σ e, dJ2/du = σ² g
     Wide exponent;
 };
 
-/// ∫₀¹ x^k e^{-px - qx²} dx, k = 0, 1, 2, by the Taylor series f_{k+1} = -(p f_k + 2q f_{k-1})/(k + 1) of the
-/// integrand. |p| and q <= ¼: the terms left out are below 1e-17.
+/// ∫₀¹ x^k e^{-px - qx²} dx for k = 0, 1, 2, by the Taylor series of the integrand, f_{k+1} = -(p f_k + 2q f_{k-1})/(k
+/// + 1). For |p| and q <= ¼ the terms that are left out are below 1e-17.
 std::array<double, 3> short_moments(double p, double q) {
     constexpr int kTerms = 24;
     constexpr auto kReciprocal = [] {
@@ -62,8 +62,8 @@ std::array<double, 3> short_moments(double p, double q) {
     return m;
 }
 
-/// |s| grows from s = A (from_start, the ray moving away from x_j) or falls to s = -A, with at most a little of the ray
-/// on x_j's other side (A < 0): s = ±(A + δx), 0 <= x <= 1.
+/// Short rays. Either |s| grows from s = A, so that the ray moves away from x_j (from_start), or |s| falls to s = -A.
+/// At most a little of the ray lies on the other side of x_j (A < 0). s = ±(A + δx), 0 <= x <= 1.
 Profile short_ray(Wide A, Wide delta, bool from_start) {
     const auto p = static_cast<double>(2 * A * delta), q = static_cast<double>(delta * delta);
     const auto [m0, m1, m2] = short_moments(p, q);
@@ -89,7 +89,7 @@ Profile ray_towards_blob_beyond(Wide a, Wide c, Wide delta) {
             area_c - fall * area_a, (fall - 1) / 2, c * c};
 }
 
-/// Tails further out than this [σ] are nothing beside a whole pass, also when multiplied by a ray of kLongPass σ.
+/// Tails farther out than this [σ] are negligible beside a whole pass, even if a ray of kLongPass σ multiplies them.
 constexpr Wide kTail = 8, kLongPass = 1e8L;
 
 Profile ray_across_blob(Wide a, Wide c, Wide delta) {
@@ -100,7 +100,7 @@ Profile ray_across_blob(Wide a, Wide c, Wide delta) {
     return {c * e + (ec - ea) / 2, (delta * ea - e) / 2, e, (ea - ec) / 2, 0};
 }
 
-/// e^{-b2} times the integrals over [a, c], b2 = |b|²/σ²; exponent 0.
+/// e^{-b2} times the integrals over [a, c], b2 = |b|²/σ². The exponent is 0.
 Profile profile(Wide b2, Wide a, Wide c, Wide delta) {
     const bool nearer_start = std::abs(a) <= std::abs(c);
     const Wide nearest = a < 0 && c > 0 ? 0 : (nearer_start ? a : c);
@@ -142,7 +142,7 @@ BlobIntegrals blob_integrals(double sigma, double w_j, double u) {
 
 Perturbation perturb(const Blob& blob, dvec3 q0, dvec3 p0, double u) {
     const Wide3 p = p0, d = Wide3(blob.center) - Wide3(q0);
-    const Wide p2 = glm::dot(p, p);  // 1 but for rounding; dividing by it makes b perpendicular to the p0 given
+    const Wide p2 = glm::dot(p, p);  // 1 up to rounding. The division by it makes b perpendicular to the given p0.
     const Wide w_j = p2 > 0 ? glm::dot(d, p) / p2 : 0;
     return perturb_wide(blob.sigma, blob.n, w_j * p - d, w_j, p, u);
 }

@@ -1,25 +1,25 @@
-/// The perturbation integrals of noise/blobs/blob_kernel.h in single precision, dimensionless and branch-free: for the
-/// warp, which needs them at every pixel that a blob covers. With a = -w_j/σ <= c = (u - w_j)/σ,
+/// The perturbation integrals of noise/blobs/blob_kernel.h in single precision, dimensionless and free of branches. The
+/// warp needs them at every pixel that a blob covers. With a = -w_j/σ <= c = (u - w_j)/σ,
 ///
 ///     i1 = ∫_a^c (c - s) e^{-s²} ds = I1/σ²        e = ∫_a^c e^{-s²} ds = (dI1/du)/σ
 ///     j2 = ∫_a^c (c - s) s e^{-s²} ds = J2/σ³      g = ∫_a^c s e^{-s²} ds = (dJ2/du)/σ²
 ///
-/// and a pixel at distance u moves by f_px x1⊥/u with x1⊥ = -2 n_j gaussian_f(|b|/σ) i1 b (physical convention;
-/// PHYSICS.md#blobs, #first-order). Only + - * /, masks and integer operations in a fixed order: loops over these
-/// vectorise under EIKONAL_CLONES (noise/base/instruction_sets.h) without changing a bit. Members that a caller does
-/// not read cost nothing.
+/// A pixel at distance u moves by f_px x1⊥/u with x1⊥ = -2 n_j gaussian_f(|b|/σ) i1 b (physical convention,
+/// PHYSICS.md#blobs, PHYSICS.md#first-order). The functions use only + - * /, masks and integer operations in a fixed
+/// order. Loops over them vectorise under EIKONAL_CLONES (noise/base/instruction_sets.h) without a change of bits.
+/// Members that a caller does not read cost nothing.
 ///
-///   function                  range                        error (tests/blob_kernel_test.cpp)
+///   function                  range                        error (tests/noise/blobs/blob_profile_test.cpp)
 ///   gaussian_f(x)             finite; 0 from |x| = 9.37    kGaussianFloatError relative, for |x| <= 9.3
 ///   blob_profile(a, c)        finite, a <= c               kBlobProfileError ∫|integrand| ds + 1e-30
 ///   blob_lateral_from_afar(c) finite                       kBlobProfileError relative + 1e-30, to i1(-∞, c)
 ///
-/// The error of blob_profile is relative for i1 and e, and for j2 and g unless a < 0 < c, when these may pass through
-/// zero. Beyond ±kBlobProfileRange, a and c count as that, so that all is finite. For a <= -kBlobAfar and c >= 0,
-/// blob_lateral_from_afar(c) is i1(a, c) within the same error, and from c = kBlobAfar on (a whole pass) so is c √π.
-/// a and c are taken as given: rounding δ = c - a in floats is the caller's.
+/// The error of blob_profile is relative for i1 and e. It is relative for j2 and g too, unless a < 0 < c, where they
+/// may pass through zero. a and c are limited to ±kBlobProfileRange, so all results are finite. For a <= -kBlobAfar and
+/// c >= 0, blob_lateral_from_afar(c) equals i1(a, c) within the same error. From c = kBlobAfar on (a whole pass) c √π
+/// does so too. a and c are taken as given: the caller answers for the rounding of δ = c - a in floats.
 ///
-/// Cost, vectorised with AVX2 (baseline x86-64), a pixel on a loaded 2.6 GHz server core: i1 4.9 (11) ns,
+/// Cost of a pixel on a loaded 2.6 GHz server core, with AVX2 (with baseline x86-64): i1 4.9 (11) ns,
 /// blob_lateral_from_afar 1.1 (2.3) ns, gaussian_f 0.5 (1.1) ns.
 #pragma once
 
@@ -43,7 +43,8 @@ namespace detail {
 inline constexpr float kSqrtPi = static_cast<float>(portable::kSqrtPi);
 inline constexpr float kGaussianReach = 9.38F;  ///< where `gaussian` has become 0
 
-// Selects are written with masks of bits, since the compiler joins comparisons into branches, which do not vectorise.
+// Selects use masks of bits. The compiler would join comparisons into branches, and loops with branches do not
+// vectorise.
 inline std::uint32_t bits(float x) {
     return std::bit_cast<std::uint32_t>(x);
 }
@@ -53,9 +54,10 @@ inline float from_bits(std::uint32_t x) {
 inline std::uint32_t mask(bool condition) {
     return -static_cast<std::uint32_t>(condition);
 }
+/// All ones for negative x and -0.
 inline std::uint32_t negative_mask(float x) {
     return -(bits(x) >> 31);
-}  ///< all ones for negative x and -0
+}
 inline float keep(std::uint32_t mask, float x) {
     return from_bits(bits(x) & mask);
 }
@@ -63,17 +65,17 @@ inline float select(std::uint32_t mask, float x, float y) {
     return from_bits((bits(x) & mask) | (bits(y) & ~mask));
 }
 
-/// min(|x|, limit); bits of positive floats are in the floats' order
+/// min(|x|, limit). The bits of positive floats are ordered as the floats are.
 inline float magnitude(float x, float limit) {
     return from_bits(std::min(bits(x) & 0x7fffffffU, bits(limit)));
 }
-/// ±magnitude, with the sign bit of x
+/// ±magnitude, with the sign bit of x.
 inline float with_sign(float magnitude, float x) {
     return from_bits(bits(magnitude) ^ (bits(x) & 0x80000000U));
 }
 
-/// e^{-x² - correction}, 0 <= x <= kGaussianReach, |correction| << 1; 0 from x = 9.37 on, where 2^-127 is left of it.
-/// x² is split so that its rounding does not turn into x² 6e-8 of the result.
+/// e^{-x² - correction} for 0 <= x <= kGaussianReach and |correction| << 1. It is 0 from x = 9.37 on, where it falls
+/// below 2^-127. x² is split: its rounding would cause a relative error of x² 6e-8.
 inline float gaussian(float x, float correction) {
     constexpr float kLog2E = 1.44269504F, kLn2Hi = 0.693359375F, kLn2Lo = -2.12194440e-4F;
     constexpr float kShifter = 12582912.0F;  // 1.5·2^23: the low bits of a sum hold the nearest integer
@@ -88,8 +90,8 @@ inline float gaussian(float x, float correction) {
     return power * (1.0F + (r + r * r * p));
 }
 
-/// area and moment of noise/math/erf.h for 0 <= x <= 9.4, as minimax polynomials in (x - 3)/(x + 3) of degree 8
-/// and 9 (fitted to 8e-8 and 2e-8).
+/// area and moment of noise/math/erf.h for 0 <= x <= 9.4: minimax polynomials in (x - 3)/(x + 3) of degree 8 and 9,
+/// fitted to 8e-8 and 2e-8.
 struct TailsFloat {
     float area, moment;
 };
@@ -120,14 +122,14 @@ inline float gaussian_f(float x) {
     return detail::gaussian(detail::magnitude(x, detail::kGaussianReach), 0.0F);
 }
 
-/// i1(-∞, c): the blob lies well ahead of the camera.
+/// i1(-∞, c), for a blob well ahead of the camera.
 inline float blob_lateral_from_afar(float c) {
     const float size = detail::magnitude(c, kBlobProfileRange), near = detail::magnitude(c, detail::kGaussianReach);
     return detail::keep(~detail::negative_mask(c), size * detail::kSqrtPi) +
            detail::gaussian(near, 0.0F) * detail::tails(near).moment;
 }
 
-/// See above; where u, a and c come from: noise/blobs/blob_kernel.h.
+/// The four integrals above.
 struct BlobProfile {
     float i1, j2, e, g;
 };
@@ -137,16 +139,17 @@ struct BlobProfile {
     const float size_a = magnitude(a_given, kBlobProfileRange), size_c = magnitude(c_given, kBlobProfileRange);
     const float a = with_sign(size_a, a_given), c = with_sign(size_c, c_given);
     const float delta = c - a;
-    // Short rays, where the closed form cancels: series about the middle m. Others: tails, as in blob_kernel.cpp.
+    // The closed form cancels for short rays. They use a series about the middle m; others use tails as in
+    // blob_kernel.cpp.
     const std::uint32_t is_short = mask(delta * (size_a + size_c) < 1.5F);
     const std::uint32_t inside = negative_mask(a) & ~negative_mask(c);
 
-    // m as a sum of two floats, for e^{-m²} amplifies its rounding
+    // m is a sum of two floats, since e^{-m²} amplifies its rounding.
     const float sum = a + c;
     const float from_c = sum - a;
     const float m = 0.5F * sum, m_low = 0.5F * ((a - (sum - from_c)) + (c - from_c));
     const float near_a = magnitude(a, kGaussianReach), near_c = magnitude(c, kGaussianReach);
-    // e^{-m²} for the series or e^{-a²} for the tails
+    // e^{-m²} for the series, or e^{-a²} for the tails.
     const float first =
         gaussian(select(is_short, magnitude(m, kGaussianReach), near_a), keep(is_short, 2.0F * m * m_low));
     const float ec = gaussian(near_c, 0.0F);
@@ -159,8 +162,8 @@ struct BlobProfile {
     const float j2 = 0.5F * (delta * first - e);
     const float g = 0.5F * (first - ec);
 
-    // e^{-s²} = e^{-m²} Σ f_k x^k, s = m + hx, |x| <= 1; f_{k+1} = -(α f_k + 2β f_{k-1})/(k + 1), |α| <= ¾, β <= 3/8;
-    // M_i = ∫ x^i Σ f_k x^k dx
+    // e^{-s²} = e^{-m²} Σ f_k x^k with s = m + hx, |x| <= 1, and f_{k+1} = -(α f_k + 2β f_{k-1})/(k + 1), |α| <= ¾,
+    // β <= 3/8. M_i = ∫ x^i Σ f_k x^k dx.
     const float h = keep(is_short, 0.5F * delta), alpha = keep(is_short, m * delta), beta2 = 2.0F * h * h;
     float f_previous = 0.0F, f = 1.0F, M0 = 0.0F, M1 = 0.0F, M2 = 0.0F;
     for (int k = 0; k < 14; k += 2) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
 #include "noise/math/portable_math.h"
 
 namespace eikonal {

@@ -29,9 +29,9 @@
 #include <vector>
 
 #include "noise/blobs/blob_kernel.h"
+#include "noise/blobs/blobs_spec.h"
 #include "noise/blobs/wind.h"
 #include "noise/math/random.h"
-#include "noise/medium/media.h"
 #include "noise/medium/refractivity.h"
 
 namespace eikonal {

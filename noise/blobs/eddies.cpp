@@ -9,20 +9,22 @@
 #include <utility>
 
 #include "noise/base/instruction_sets.h"
+#include "noise/math/cubic_taps.h"
 #include "noise/math/periodic_spline3.h"
 #include "noise/math/portable_math.h"
 #include "noise/math/random.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
 
 constexpr std::size_t kSize = kEddySize;
-constexpr std::size_t kWrapped = kSize + 3;  ///< nodes -1, n and n + 1 beside a period's own: no tap needs a modulo
+constexpr std::size_t kWrapped = kSize + 3;  ///< with nodes -1, n and n + 1, so that no tap needs a modulo
 constexpr std::size_t kLanes = 4;            ///< A_x, A_y, A_z, 0
 constexpr double kCell = kEddyPeriod / kEddySize;
 constexpr std::array<int, 3> kSizes{kEddySize, kEddySize, kEddySize};
 
-/// Two nodes beside each other along z, one after the other.
+/// Two neighbouring nodes along z, kLanes numbers each.
 using TwoNodes = float __attribute__((vector_size(32)));
 
 TwoNodes load(const float* p) {
@@ -33,24 +35,6 @@ TwoNodes load(const float* p) {
 TwoNodes each(float first, float second) {
     return TwoNodes{first, first, first, first, second, second, second, second};
 }
-
-/// The cubic B-spline's weights at a fraction of a cell, and their slopes a cell.
-struct Taps {
-    std::size_t first;  ///< of four wrapped nodes
-    std::array<float, 4> w, d;
-
-    explicit Taps(double turns) {
-        const double cells = (turns - std::floor(turns)) * kEddySize;
-        const int i = std::min(static_cast<int>(cells), kEddySize - 1);
-        first = static_cast<std::size_t>(i);
-        const auto f = static_cast<float>(cells - i);
-        const float g = 1 - f;
-        constexpr float sixth = 1.0F / 6;
-        w = {g * g * g * sixth, (4 + f * f * (3 * f - 6)) * sixth, (4 + g * g * (3 * g - 6)) * sixth,
-             f * f * f * sixth};
-        d = {-0.5F * g * g, 0.5F * f * (3 * f - 4), -0.5F * g * (3 * g - 4), 0.5F * f * f};
-    }
-};
 
 LatticeField potential(std::uint64_t seed, std::uint64_t component) {
     TurbulenceSpec spec;
@@ -69,13 +53,13 @@ std::array<LatticeField, 3> potentials(std::uint64_t seed) {
     return {std::move(*made[0]), std::move(*made[1]), std::move(*made[2])};
 }
 
-/// 1/√(k² + k0²) turns a lattice field's spectrum into the potential's; k in signed bins.
+/// 1/√(k² + k0²), which turns a lattice field's spectrum into the potential's. mx, my, mz: signed bins.
 double potential_factor(int mx, int my, int mz) {
     const double k1 = portable::kTwoPi / kEddyPeriod, m2 = mx * mx + my * my + mz * mz;
     return 1 / std::sqrt(k1 * k1 * m2 + portable::kTwoPi * portable::kTwoPi);
 }
 
-/// Mean square of the cubic spline through e^{iθj}, and of its slope a cell: sums of B-splines of degree 7 and 5.
+/// Mean square of the cubic spline through e^{iθj} and of its slope [1/cell]: sums of B-splines of degree 7 and 5.
 struct SplineGain {
     double value, slope;
 
@@ -92,7 +76,7 @@ struct SplineGain {
     }
 };
 
-/// Variance of each component of the curl of the splined potential.
+/// Variance of each component of the curl of the potential's splines.
 double curl_variance(const LatticeField& field) {
     std::vector<SplineGain> gain;
     for (int m = 0; m <= kEddySize / 2; ++m) gain.emplace_back(m);
@@ -113,7 +97,7 @@ double curl_variance(const LatticeField& field) {
 
 EddyField::EddyField(std::uint64_t seed)
     : potential_(potentials(seed)), plan_(FftPlan::Kind::ComplexToReal, kSizes, 3) {
-    // The samples are weighed by slopes a cell: their unit is a cell.
+    // Slopes are derivatives by cells, so the cell is the potential's unit of length.
     const double scale = 1 / (kCell * std::sqrt(curl_variance(potential_[0])));
     std::array<double, kSize> prefilter;
     for (int i = 0; i < kEddySize; ++i)
@@ -155,10 +139,13 @@ EddyInstant EddyField::at(double t, EddyWorkspace& room) const {
 }
 
 EIKONAL_CLONES dvec3 EddyInstant::velocity(const dvec3& x) const {
-    const Taps tx(x.x), ty(x.y), tz(x.z);
-    const float* corner = coefficients_.data() + ((tx.first * kWrapped + ty.first) * kWrapped + tz.first) * kLanes;
-    const TwoNodes w01 = each(tz.w[0], tz.w[1]), w23 = each(tz.w[2], tz.w[3]);
-    const TwoNodes d01 = each(tz.d[0], tz.d[1]), d23 = each(tz.d[2], tz.d[3]);
+    const PeriodicTaps<float> in_x = periodic_taps<float>(x.x, kEddySize), in_y = periodic_taps<float>(x.y, kEddySize),
+                              in_z = periodic_taps<float>(x.z, kEddySize);
+    const float* corner =
+        coefficients_.data() + ((in_x.first * kWrapped + in_y.first) * kWrapped + in_z.first) * kLanes;
+    const CubicTaps<float>&tx = in_x.taps, &ty = in_y.taps, &tz = in_z.taps;
+    const TwoNodes w01 = each(tz.weight[0], tz.weight[1]), w23 = each(tz.weight[2], tz.weight[3]);
+    const TwoNodes d01 = each(tz.slope[0], tz.slope[1]), d23 = each(tz.slope[2], tz.slope[3]);
     TwoNodes sum_x{}, sum_y{}, sum_z{};  // of ∂A/∂x, ∂A/∂y, ∂A/∂z: even nodes along z, then odd ones
     for (std::size_t i = 0; i < 4; ++i) {
         TwoNodes value{}, slope_y{}, slope_z{};
@@ -166,13 +153,13 @@ EIKONAL_CLONES dvec3 EddyInstant::velocity(const dvec3& x) const {
             const float* row = corner + (i * kWrapped + j) * kWrapped * kLanes;
             const TwoNodes c01 = load(row), c23 = load(row + 2 * kLanes);
             const TwoNodes v = w01 * c01 + w23 * c23, s = d01 * c01 + d23 * c23;
-            value += ty.w[j] * v;
-            slope_y += ty.d[j] * v;
-            slope_z += ty.w[j] * s;
+            value += ty.weight[j] * v;
+            slope_y += ty.slope[j] * v;
+            slope_z += ty.weight[j] * s;
         }
-        sum_x += tx.d[i] * value;
-        sum_y += tx.w[i] * slope_y;
-        sum_z += tx.w[i] * slope_z;
+        sum_x += tx.slope[i] * value;
+        sum_y += tx.weight[i] * slope_y;
+        sum_z += tx.weight[i] * slope_z;
     }
     const auto component = [](const TwoNodes& sum, int c) { return sum[c] + sum[c + 4]; };
     const dvec3 dx(component(sum_x, 0), component(sum_x, 1), component(sum_x, 2));

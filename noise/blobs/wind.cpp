@@ -8,12 +8,15 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "noise/blobs/blobs_spec.h"
+
 namespace eikonal {
 namespace {
 
 constexpr std::size_t kInstantsKept = 6;  ///< 1 MB
 
-/// World to lattice: the vertical becomes (1, 1/ρ, 1/ρ²), ρ³ = ρ + 1, the plane's least approximable direction.
+/// Rotation from world to lattice. The vertical becomes (1, 1/ρ, 1/ρ²) with ρ³ = ρ + 1, a direction that rational ones
+/// approximate badly.
 const glm::dmat3& rotation() {
     static const glm::dmat3 matrix = [] {
         constexpr double a = 0.754877666246693, b = 0.569840290998053;
@@ -38,7 +41,7 @@ dvec3 WindInterval::velocity(const dvec3& x, double f) const {
         eddies = end_->velocity(place);
     else
         eddies = (1 - f) * begin_->velocity(place) + f * end_->velocity(place);
-    return spec_.rise + spec_.rms * (eddies * rotation());  // the transpose turns back
+    return spec_.rise + spec_.rms * (eddies * rotation());  // the transpose is the inverse rotation
 }
 
 dvec3 WindInterval::carry(const dvec3& x, double f0, double f1) const {

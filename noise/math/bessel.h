@@ -1,7 +1,9 @@
-/// The diffraction-free aperture filter of a disc: jinc(x) = 2 J1(x)/x, from portable arithmetic only.
+/// The filter that averaging over a disc applies to a plane wave: jinc(x) = 2 J1(x)/x.
 ///
-/// A disc of diameter A averages a plane wave of wavenumber k across it to jinc(kA/2) times its centre value. *added*
-/// Absolute error at most kJincError for every finite x (tests/path_tables_test.cpp); jinc(0) = 1 exactly.
+/// A disc of diameter A averages a wave of wavenumber k across it to jinc(kA/2) times the value at its centre.
+/// Diffraction is neglected. *added* jinc uses portable arithmetic only (noise/math/portable_math.h). Its absolute
+/// error is at most kJincError for every finite x (tests/noise/turbulence/path_tables_test.cpp). jinc(0) = 1 exactly.
+/// Theory: PHYSICS.md#displacement-tables.
 #pragma once
 
 #include <cmath>
@@ -12,7 +14,8 @@ namespace eikonal {
 
 inline constexpr double kJincError = 1e-12;
 
-/// 2 J1(x)/x. Power series below 12.5; Hankel's asymptotic expansion beyond, cut at its smallest term.
+/// 2 J1(x)/x, by the power series below 12.5 and by Hankel's asymptotic expansion above. The expansion ends at its
+/// smallest term.
 inline double jinc(double x) {
     x = std::abs(x);
     if (x < 12.5) {

@@ -1,15 +1,15 @@
-/// Tails of the Gaussian with their exponential taken out, portable like noise/math/portable_math.h (double, + - * /
-/// only):
+/// Tails of the Gaussian, divided by its value where they begin. Portable like noise/math/portable_math.h: double
+/// precision, and + - * / only.
 ///
 ///     area(x)   = e^{x²} ∫_x^∞ e^{-s²} ds          = (√π/2) erfcx(x)
 ///     moment(x) = e^{x²} ∫_x^∞ (s - x) e^{-s²} ds   = ½ - x area(x)
 ///
-/// so that erfc x = (2/√π) e^{-x²} area(x), without underflow and, in `moment`, without the cancellation of its right
-/// side. Valid for 0 <= x <= kGaussianTailsLimit; both positive and falling, from √π/2 and ½ to 1/(2x) and 1/(4x²).
-/// Relative error of either at most kGaussianTailsError (tests/blob_kernel_test.cpp).
+/// Hence erfc x = (2/√π) e^{-x²} area(x). Neither function underflows. `moment` does not suffer from the cancellation
+/// on the right side above. Both are positive and fall with x, from √π/2 and ½ to 1/(2x) and 1/(4x²). Range: 0 <= x <=
+/// kGaussianTailsLimit. Relative error: at most kGaussianTailsError (tests/noise/blobs/blob_kernel_test.cpp).
 ///
-/// Form: (x + 4) area and (x + 4)² moment are smooth in t = (x - 4)/(x + 4), which maps [0, ∞) to [-1, 1). Minimax
-/// polynomials in t, of degree 22 and 23, fitted by Remez exchange to 4e-17 and 2e-16.
+/// (x + 4) area and (x + 4)² moment are smooth functions of t = (x - 4)/(x + 4), which maps [0, ∞) to [-1, 1). They are
+/// minimax polynomials in t, of degree 22 and 23, fitted by Remez exchange to 4e-17 and 2e-16.
 #pragma once
 
 #include <array>

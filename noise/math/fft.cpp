@@ -12,7 +12,7 @@ std::mutex& planner_lock() {
     return lock;
 }
 
-// Estimated plans of scalar codelets: FFTW chooses among SIMD codelets by processor, and those round differently.
+// FFTW chooses SIMD codelets by processor, and they round differently. Hence scalar codelets only.
 constexpr unsigned kPlanFlags = FFTW_ESTIMATE | FFTW_NO_SIMD;
 
 }  // namespace
@@ -30,7 +30,7 @@ FftPlan::FftPlan(Kind kind, std::span<const int> dims, int howmany) {
     spectrum_size_ =
         real ? samples / static_cast<std::size_t>(dims.back()) * static_cast<std::size_t>(dims.back() / 2 + 1)
              : samples;
-    // Estimating touches neither array, but FFTW wants to see their alignment.
+    // Estimation touches neither array, but FFTW reads their alignment.
     FftVector<complex32> in(1);
     FftVector<complex32> out(1);
     auto* pi = reinterpret_cast<fftwf_complex*>(in.data());

@@ -1,21 +1,25 @@
-/// Bins of a discrete Fourier transform of n samples: which wave each one stands for.
+/// The wave that each bin of a discrete Fourier transform of n samples stands for.
 #pragma once
+
+#include "noise/math/portable_math.h"
 
 namespace eikonal {
 
-/// Signed index of Fourier bin i of n: -n/2 < m <= n/2.
+/// Signed index m of bin i of n: -n/2 < m <= n/2.
 constexpr int signed_index(int i, int n) {
     return 2 * i <= n ? i : i - n;
 }
-/// Whether bin i of n is the Nyquist mode, its own conjugate partner.
+/// Whether bin i of n is the Nyquist mode, which is its own conjugate partner.
 constexpr bool is_nyquist(int i, int n) {
     return 2 * i == n;
 }
-/// Largest |m| of n bins that is not Nyquist: modes beyond bend no light.
+/// The largest |m| of n bins below Nyquist. Only modes up to it bend light (noise/turbulence/lattice/lattice.h).
 constexpr int largest_bending_mode(int n) {
     return (n - 1) / 2;
 }
-/// Wavenumber of Fourier bin i of n along an axis [rad/m].
-double bin_wavenumber(int i, int n, double period);
+/// Wavenumber of bin i of n along an axis of the given period [m], in rad/m.
+inline double bin_wavenumber(int i, int n, double period) {
+    return portable::kTwoPi * signed_index(i, n) / period;
+}
 
 }  // namespace eikonal

@@ -8,7 +8,7 @@
 namespace eikonal {
 namespace {
 
-/// Wellons' triple32, a bijection of 32 bits with avalanche bias 0.02 %.
+/// Wellons' triple32: a bijection of 32-bit words with an avalanche bias of 0.02 %.
 inline std::uint32_t triple32(std::uint32_t x) {
     x = (x ^ (x >> 17)) * 0xed5ad4bbU;
     x = (x ^ (x >> 11)) * 0xac4c1b51U;
@@ -38,7 +38,7 @@ void gaussian_modes(std::uint64_t key, const std::uint32_t* __restrict counter, 
     for (int i = 0; i < count; ++i) {
         const std::uint32_t r0 = triple32(counter[i] * 0x9e3779b9U + low);
         const std::uint32_t r1 = triple32(r0 + high);
-        // u in (0, 1]; the angle a in [-π/2, π/2) with a random sign of its cosine covers the circle
+        // u is in (0, 1]. The angle a is in [-π/2, π/2); a random sign of its cosine makes it cover the circle.
         const float u = (static_cast<float>(static_cast<std::int32_t>(r0 >> 1)) + 1.0F) * 0x1p-31F;
         const float radius = std::sqrt(-2 * log_unit(u)) * scale[i];
         const float a = static_cast<float>(static_cast<std::int32_t>(r1 << 1)) * (1.57079633F * 0x1p-31F);

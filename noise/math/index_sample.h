@@ -1,4 +1,4 @@
-/// What every field of refractive index returns at a point: n - n_ambient and its derivatives.
+/// The refractive index above ambient at one point, with its derivatives: what every medium returns.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -6,7 +6,7 @@
 
 namespace eikonal {
 
-/// n - n_ambient of a medium below this is nothing: what bounds are drawn by, in parts of its own largest.
+/// |n - n_ambient| below this part of a medium's own largest value counts as zero. It decides where a medium ends.
 inline constexpr double kNegligibleIndex = 1e-16;
 
 /// Index above ambient (dimensionless) and its gradient [1/m], world axes.
@@ -15,7 +15,7 @@ struct IndexSample {
     glm::dvec3 gradient{0, 0, 0};
 };
 
-/// The same with the second derivatives ∂²n/∂x_i∂x_j [1/m²], symmetric.
+/// The index with its gradient [1/m] and its second derivatives ∂²n/∂x_i∂x_j [1/m²], which are symmetric.
 struct IndexJet {
     double n = 0;
     glm::dvec3 gradient{0, 0, 0};

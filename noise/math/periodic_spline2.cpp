@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "noise/base/instruction_sets.h"
@@ -14,31 +13,7 @@
 namespace eikonal {
 namespace {
 
-using Float4 = float __attribute__((vector_size(16)));
-
-Float4 load(const float* p) {
-    Float4 v;
-    std::memcpy(&v, p, sizeof v);
-    return v;
-}
-
-float sum(Float4 v) {
-    return (v[0] + v[2]) + (v[1] + v[3]);
-}
-
-/// Cubic B-spline weights of the taps -1, 0, 1, 2 at offset t in [0, 1], and their derivatives.
-struct Weights {
-    Float4 w, d;
-};
-
-Weights weights(float t) {
-    const float s = 1 - t, t2 = t * t, s2 = s * s;
-    constexpr float sixth = 1.0F / 6;
-    return {Float4{sixth * (s2 * s), sixth * (4 - 3 * t2 * (2 - t)), sixth * (4 - 3 * s2 * (2 - s)), sixth * (t2 * t)},
-            Float4{-0.5F * s2, 0.5F * t * (3 * t - 4), -0.5F * s * (3 * s - 4), 0.5F * t2}};
-}
-
-/// x modulo n, in [0, n]; x any finite number.
+/// x modulo n, in [0, n], for any finite x.
 double wrap(double x, double n) {
     if (std::abs(x) > 1e9 * n) x = std::fmod(x, n);
     const double r = x - n * std::floor(x / n);
@@ -57,7 +32,7 @@ EIKONAL_CLONES void locate(double first, double step, double size, double inv_si
                            std::int32_t* cell, float* t) {
     for (int i = 0; i < count; ++i) {
         const double u = first + static_cast<double>(begin + i) * step;
-        // |u / size| < 2^31: the start and the step are reduced, the number of points is an int
+        // |u / size| < 2^31, since start and step are reduced and the number of points is an int.
         const double turns = u * inv_size;
         double whole = static_cast<double>(static_cast<std::int32_t>(turns));
         whole -= turns < whole ? 1.0 : 0.0;
@@ -69,25 +44,28 @@ EIKONAL_CLONES void locate(double first, double step, double size, double inv_si
     }
 }
 
-/// A row at constant y: the taps along y collapse once into two periodic functions of x, the value and ∂/∂v.
+/// Weighs the coefficients of four rows by the taps along y. The result is two periodic functions of x: the value, and
+/// its derivative along y.
 EIKONAL_CLONES void collapse_row(const float* coefficients, int stride, int count, float ty, float* value,
                                  float* slope) {
-    const Weights y = weights(ty);
+    const FactoredCubicTaps y(ty);
     const float *c0 = coefficients, *c1 = c0 + stride, *c2 = c1 + stride, *c3 = c2 + stride;
-    const float w0 = y.w[0], w1 = y.w[1], w2 = y.w[2], w3 = y.w[3], d0 = y.d[0], d1 = y.d[1], d2 = y.d[2], d3 = y.d[3];
+    const float w0 = y.weight[0], w1 = y.weight[1], w2 = y.weight[2], w3 = y.weight[3];
+    const float d0 = y.slope[0], d1 = y.slope[1], d2 = y.slope[2], d3 = y.slope[3];
     for (int a = 0; a < count; ++a) {
         value[a] = (w0 * c0[a] + w1 * c1[a]) + (w2 * c2[a] + w3 * c3[a]);
         slope[a] = (d0 * c0[a] + d1 * c1[a]) + (d2 * c2[a] + d3 * c3[a]);
     }
 }
 
-/// A cell of a row as polynomials in t. Gradients: ∂/∂u = a0 + a1 t + a2 t², ∂/∂v = b0 + b1 t + b2 t² + b3 t³.
+/// The gradient in one cell of a row, as polynomials in the offset t:
+///     ∂/∂u = a0 + a1 t + a2 t²,   ∂/∂v = b0 + b1 t + b2 t² + b3 t³
 struct GradientCell {
     Float4 low;   ///< a0, b0, a1, b1
     Float4 high;  ///< a2, b2, 0, b3
 };
 
-/// Rows to columns.
+/// Transposes the 4 × 4 matrix of rows a, b, c, d.
 void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
     const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5),
                  ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
@@ -104,13 +82,15 @@ int whole_cells(int cells) {
     return (cells + kCellsAtOnce - 1) / kCellsAtOnce * kCellsAtOnce;
 }
 
-/// value, slope: at least whole_cells(cells) + 3 readable; out: whole_cells(cells).
+/// value and slope must have whole_cells(cells) + 3 readable numbers. out must have room for whole_cells(cells).
 EIKONAL_CLONES void gradient_cells(const float* value, const float* slope, int cells, float scale_x, float scale_y,
                                    GradientCell* out) {
     constexpr float sixth = 1.0F / 6;
     for (int i = 0; i < cells; i += kCellsAtOnce) {
-        const Float4 v0 = load(value + i), v1 = load(value + i + 1), v2 = load(value + i + 2), v3 = load(value + i + 3);
-        const Float4 s0 = load(slope + i), s1 = load(slope + i + 1), s2 = load(slope + i + 2), s3 = load(slope + i + 3);
+        const Float4 v0 = load_float4(value + i), v1 = load_float4(value + i + 1), v2 = load_float4(value + i + 2),
+                     v3 = load_float4(value + i + 3);
+        const Float4 s0 = load_float4(slope + i), s1 = load_float4(slope + i + 1), s2 = load_float4(slope + i + 2),
+                     s3 = load_float4(slope + i + 3);
         Float4 a0 = scale_x * (0.5F * (v2 - v0)), a1 = scale_x * ((v0 - v1) + (v2 - v1));
         Float4 a2 = scale_x * (0.5F * ((v3 - v0) + 3 * (v1 - v2))), none{};
         Float4 b0 = scale_y * (sixth * (s0 + 4 * s1 + s2)), b1 = scale_y * (0.5F * (s2 - s0));
@@ -135,7 +115,7 @@ EIKONAL_CLONES void gradients_on_row(const GradientCell* cells, const std::int32
     }
 }
 
-/// The value as a cubic of each cell.
+/// The value in each cell, as the four coefficients of a cubic.
 EIKONAL_CLONES void value_cells(const float* value, int cells, float scale, Float4* out) {
     for (int i = 0; i < cells; ++i) {
         const float c0 = value[i], c1 = value[i + 1], c2 = value[i + 2], c3 = value[i + 3];
@@ -158,10 +138,10 @@ EIKONAL_CLONES void values_at(const float* coefficients, int stride, const Block
                               float* values) {
     for (int i = 0; i < count; ++i) {
         const float* c = coefficients + static_cast<std::ptrdiff_t>(block.cell_y[i]) * stride + block.cell_x[i];
-        const Weights x = weights(block.tx[i]), y = weights(block.ty[i]);
-        Float4 value = y.w[0] * load(c);
-        for (int b = 1; b < 4; ++b) value += y.w[b] * load(c + b * static_cast<std::ptrdiff_t>(stride));
-        values[i] += scale * sum(value * x.w);
+        const FactoredCubicTaps x(block.tx[i]), y(block.ty[i]);
+        Float4 value = y.weight[0] * load_float4(c);
+        for (int b = 1; b < 4; ++b) value += y.weight[b] * load_float4(c + b * static_cast<std::ptrdiff_t>(stride));
+        values[i] += scale * dot4(value, x.weight);
     }
 }
 
@@ -196,8 +176,8 @@ PeriodicSpline2::PeriodicSpline2(const SplinePlan2& plan, FftVector<complex32>&&
     FftScratch<float> samples(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_));
     plan.plan_.execute(modes.data(), samples.data());
     modes = {};
-    // Transposed, x fastest, so that whole rows are read in order. Row and column 0 hold sample -1; the period is
-    // [1, n + 1), followed by three wrapped ones.
+    // The coefficients are transposed: x is the fastest, so that whole rows are read in order. Row and column 0 hold
+    // sample -1. The period [1, n + 1) follows, and three wrapped samples.
     coefficients_.resize(static_cast<std::size_t>(ny_ + 4) * static_cast<std::size_t>(stride_));
     constexpr int kTile = 16;
     for (int b0 = 0; b0 < ny_; b0 += kTile)
@@ -224,27 +204,27 @@ PeriodicSpline2::Sample PeriodicSpline2::sample(double x, double y) const {
     if (coefficients_.empty()) return {};
     const double u = wrap(std::fmod(x, nx_ / per_x_) * per_x_, nx_), v = wrap(std::fmod(y, ny_ / per_y_) * per_y_, ny_);
     const auto cu = static_cast<std::int32_t>(u), cv = static_cast<std::int32_t>(v);
-    const Weights wx = weights(static_cast<float>(u - cu)), wy = weights(static_cast<float>(v - cv));
+    const FactoredCubicTaps wx(static_cast<float>(u - cu)), wy(static_cast<float>(v - cv));
     const float* c = coefficients_.data() + static_cast<std::ptrdiff_t>(cv) * stride_ + cu;
-    Float4 value = wy.w[0] * load(c), slope = wy.d[0] * load(c);
+    Float4 value = wy.weight[0] * load_float4(c), slope = wy.slope[0] * load_float4(c);
     for (int b = 1; b < 4; ++b) {
-        const Float4 row = load(c + b * static_cast<std::ptrdiff_t>(stride_));
-        value += wy.w[b] * row;
-        slope += wy.d[b] * row;
+        const Float4 row = load_float4(c + b * static_cast<std::ptrdiff_t>(stride_));
+        value += wy.weight[b] * row;
+        slope += wy.slope[b] * row;
     }
-    return {sum(value * wx.w), static_cast<float>(per_x_) * sum(value * wx.d),
-            static_cast<float>(per_y_) * sum(slope * wx.w)};
+    return {dot4(value, wx.weight), static_cast<float>(per_x_) * dot4(value, wx.slope),
+            static_cast<float>(per_y_) * dot4(slope, wx.weight)};
 }
 
 PeriodicSpline2::Jet PeriodicSpline2::jet(double x, double y) const {
     if (coefficients_.empty()) return {};
     const double u = wrap(std::fmod(x, nx_ / per_x_) * per_x_, nx_), v = wrap(std::fmod(y, ny_ / per_y_) * per_y_, ny_);
     const auto cu = static_cast<std::int32_t>(u), cv = static_cast<std::int32_t>(v);
-    const CubicTaps tx(u - cu), ty(v - cv);
+    const CubicTaps<double> tx(u - cu), ty(v - cv);
     const float* c = coefficients_.data() + static_cast<std::ptrdiff_t>(cv) * stride_ + cu;
     Double4 value{}, slope{}, curvature{};
     for (int b = 0; b < 4; ++b, c += stride_) {
-        const Double4 row = load_taps(c);
+        const Double4 row = load_double4(c);
         value += ty.weight[b] * row;
         slope += ty.slope[b] * row;
         curvature += ty.curvature[b] * row;
@@ -257,7 +237,7 @@ PeriodicSpline2::Jet PeriodicSpline2::jet(double x, double y) const {
             per_y_ * per_y_ * dot4(curvature, tx.weight)};
 }
 
-/// A batch's line in cells: start in [0, n], step in [-n/2, n/2].
+/// A line of points in units of cells: start in [0, n], step in [-n/2, n/2].
 struct PeriodicSpline2::Line {
     double u, v, du, dv;
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -17,9 +16,9 @@
 namespace eikonal {
 namespace {
 
-constexpr int kAliases = 6;  ///< on each side; the weight of the next is below 1e-6 of the error
+constexpr int kAliases = 6;  ///< on each side. The next one changes the error by less than 1e-6.
 
-/// Relative weights of mode and aliases in the spline: calls action(m, weight), Σ weight = 1.
+/// Calls action(m, weight) for the mode (m = 0) and its aliases in the spline. The weights sum to 1.
 template <class Action>
 void for_each_alias(double turns, Action&& action) {
     const auto weight = [&](int m) { return 1 / ((turns + m) * (turns + m) * (turns + m) * (turns + m)); };
@@ -28,7 +27,7 @@ void for_each_alias(double turns, Action&& action) {
     for (int m = -kAliases; m <= kAliases; ++m) action(m, weight(m) / sum);
 }
 
-/// Where a bin of a coarse axis goes in the finer one.
+/// The bins of a finer axis that take a bin of a coarser one, and the factor of each.
 struct Targets {
     int count;
     std::array<int, 2> bin;
@@ -40,68 +39,26 @@ Targets targets(int i, int n, int finer) {
     return {1, {m < 0 ? m + finer : m, 0}, 1.0F};
 }
 
-using Float4 = float __attribute__((vector_size(16)));
-
-Float4 load(const float* p) {
-    Float4 v;
-    std::memcpy(&v, p, sizeof v);
-    return v;
-}
-
-double dot(Float4 a, Float4 b) {
-    const Float4 p = a * b;
-    return (p[0] + p[2]) + (p[1] + p[3]);
-}
-
-/// The cubic B-spline's four weights at fraction f of a cell, and their derivatives a cell. The first tap of cell i
-/// stands at i in coefficients that begin with sample -1.
-struct Basis {
-    Float4 w, d;
-    std::size_t first;
-
-    Basis(double x, int n) {
-        const double cells = (x - std::floor(x)) * n;
-        const int i = std::min(static_cast<int>(cells), n - 1);
-        first = static_cast<std::size_t>(i);
-        const auto f = static_cast<float>(cells - i);
-        const float g = 1 - f;
-        constexpr float sixth = 1.0F / 6;
-        w = Float4{g * g * g * sixth, (4 + f * f * (3 * f - 6)) * sixth, (4 + g * g * (3 * g - 6)) * sixth,
-                   f * f * f * sixth};
-        d = Float4{-0.5F * g * g, 0.5F * f * (3 * f - 4), -0.5F * g * (3 * g - 4), 0.5F * f * f};
-    }
-};
-
 constexpr int kWrap = 3;  ///< samples -1, n and n + 1 are stored beside a period's own, so that no tap needs a modulo
 
-/// One axis of a position [periods] in double precision.
-struct Place {
-    std::size_t first;
-    CubicTaps taps;
-};
-Place place(double x, int n) {
-    const double cells = (x - std::floor(x)) * n;
-    const int i = std::min(static_cast<int>(cells), n - 1);
-    return {static_cast<std::size_t>(i), CubicTaps(cells - i)};
-}
-
-/// A spline's coefficients: wrapped copies of `size` cells, z fastest.
+/// A spline's coefficients: `size` cells, z fastest, wrapped by kWrap.
 struct Coefficients {
     const float* data;
     std::array<int, 3> size;
 
-    /// Value and gradient, and the Hessian if `second`, per period.
+    /// Value and gradient [per period], and the Hessian if `second`.
     template <bool second>
     [[gnu::always_inline]] IndexJet evaluate(const dvec3& x) const {
-        const Place bx = place(x.x, size[0]), by = place(x.y, size[1]), bz = place(x.z, size[2]);
+        const PeriodicTaps<double> bx = periodic_taps<double>(x.x, size[0]), by = periodic_taps<double>(x.y, size[1]),
+                                   bz = periodic_taps<double>(x.z, size[2]);
         const std::size_t row = static_cast<std::size_t>(size[2]) + kWrap,
                           plane = (static_cast<std::size_t>(size[1]) + kWrap) * row;
         const float* corner = data + bx.first * plane + by.first * row + bz.first;
-        Double4 value{}, x1{}, y1{}, xx{}, xy{}, yy{};  // still to be weighed along z
+        Double4 value{}, x1{}, y1{}, xx{}, xy{}, yy{};  // not yet weighed along z
         for (std::size_t i = 0; i < 4; ++i, corner += plane) {
             Double4 v{}, s{}, q{};
             for (std::size_t j = 0; j < 4; ++j) {
-                const Double4 c = load_taps(corner + j * row);
+                const Double4 c = load_double4(corner + j * row);
                 v += by.taps.weight[j] * c;
                 s += by.taps.slope[j] * c;
                 if constexpr (second) q += by.taps.curvature[j] * c;
@@ -131,7 +88,7 @@ struct Coefficients {
     }
 };
 
-/// Least and largest of n > 0 values, kLanes at a time.
+/// The least and the largest of n > 0 values.
 EIKONAL_CLONES std::pair<float, float> bounds(const float* v, std::size_t n) {
     constexpr std::size_t kLanes = 16;
     std::array<float, kLanes> low, high;
@@ -207,7 +164,7 @@ FftVector<complex32> pad_spectrum(const FftVector<complex32>& spectrum, const st
 
 PeriodicSpline3::PeriodicSpline3(FftVector<complex32> spectrum, const std::array<int, 3>& size, const Padding& padding)
     : size_{size[0] * padding[0], size[1] * padding[1], size[2] * padding[2]} {
-    // the spline's own transfer goes before the padding, whose zeros need none
+    // The prefilter comes before the padding: zeros need none.
     std::array<std::vector<float>, 3> inverse;
     for (int axis = 0; axis < 3; ++axis)
         for (int i = 0; i < size[axis]; ++i) {
@@ -243,24 +200,26 @@ PeriodicSpline3::PeriodicSpline3(FftVector<complex32> spectrum, const std::array
 }
 
 EIKONAL_CLONES PeriodicSpline3::Sample PeriodicSpline3::sample(const dvec3& x) const {
-    const Basis bx(x.x, size_[0]), by(x.y, size_[1]), bz(x.z, size_[2]);
+    const PeriodicTaps<float> bx = periodic_taps<float>(x.x, size_[0]), by = periodic_taps<float>(x.y, size_[1]),
+                              bz = periodic_taps<float>(x.z, size_[2]);
     const std::size_t row = static_cast<std::size_t>(size_[2]) + kWrap,
                       plane = (static_cast<std::size_t>(size_[1]) + kWrap) * row;
     const float* corner = coefficients_.data() + bx.first * plane + by.first * row + bz.first;
-    Float4 value{}, slope_x{}, slope_y{};  // still to be weighed along z
+    Float4 value{}, slope_x{}, slope_y{};  // not yet weighed along z
     for (std::size_t i = 0; i < 4; ++i, corner += plane) {
         Float4 v{}, s{};
         for (std::size_t j = 0; j < 4; ++j) {
-            const Float4 c = load(corner + j * row);
-            v += by.w[j] * c;
-            s += by.d[j] * c;
+            const Float4 c = load_float4(corner + j * row);
+            v += by.taps.weight[j] * c;
+            s += by.taps.slope[j] * c;
         }
-        value += bx.w[i] * v;
-        slope_x += bx.d[i] * v;
-        slope_y += bx.w[i] * s;
+        value += bx.taps.weight[i] * v;
+        slope_x += bx.taps.slope[i] * v;
+        slope_y += bx.taps.weight[i] * s;
     }
-    return {dot(value, bz.w),
-            {size_[0] * dot(slope_x, bz.w), size_[1] * dot(slope_y, bz.w), size_[2] * dot(value, bz.d)}};
+    const double nx = size_[0], ny = size_[1], nz = size_[2];
+    return {dot4(value, bz.taps.weight),
+            {nx * dot4(slope_x, bz.taps.weight), ny * dot4(slope_y, bz.taps.weight), nz * dot4(value, bz.taps.slope)}};
 }
 
 EIKONAL_CLONES IndexSample PeriodicSpline3::smooth_sample(const dvec3& x) const {

@@ -1,10 +1,17 @@
-/// A triply periodic function as a cubic B-spline through its samples: C2, with its exact gradient and Hessian.
+/// A triply periodic function as a cubic B-spline through its samples, with its exact gradient and Hessian. The
+/// function and its first two derivatives are continuous.
 ///
-/// Interpolation error against the trigonometric sum, in rms and relative to the mode, for a mode of τ turns a cell
-/// along an axis: spline_error(τ) for the value, spline_slope_error(τ) for its derivative there. Both are known in
-/// closed form. (τ: value, slope) 1/2: 0.7, 0.7; 3/8: 0.17, 0.23; 1/4: 0.019, 0.04; 1/8: 8e-4, 3e-3; 1/16: 4e-5, 4e-4.
-/// Padding by p evaluates the trigonometric sum on a lattice p times finer first, which divides τ by p and costs p³ in
-/// memory. Failures: none but std::bad_alloc.
+/// The spline deviates from the trigonometric sum between the samples. For a mode of τ turns a cell along an axis, the
+/// rms error relative to the mode is spline_error(τ) in the value and spline_slope_error(τ) in the derivative along
+/// that axis:
+///     τ        1/2    3/8    1/4     1/8    1/16
+///     value    0.7    0.17   0.019   8e-4   4e-5
+///     slope    0.7    0.23   0.04    3e-3   4e-4
+/// Padding by p evaluates the trigonometric sum on a lattice p times finer first. It divides τ by p and costs p³ in
+/// memory.
+///
+/// Failures: std::bad_alloc.
+/// Theory: PHYSICS.md#spline.
 #pragma once
 
 #include <array>
@@ -16,35 +23,37 @@ namespace eikonal {
 
 using glm::dvec3;
 
-/// A half-complex spectrum, size[0] × size[1] × (size[2]/2 + 1), on a lattice of `finer` >= size points along each
-/// axis: same trigonometric sum. A Nyquist mode that is one no more becomes its two halves, a cosine as before.
+/// Moves a half-complex spectrum, size[0] × size[1] × (size[2]/2 + 1), to a lattice of `finer` >= size points along
+/// each axis. The trigonometric sum stays the same. A mode that was Nyquist and is no longer is split into the two
+/// halves of a cosine.
 FftVector<complex32> pad_spectrum(const FftVector<complex32>& spectrum, const std::array<int, 3>& size,
                                   const std::array<int, 3>& finer);
 
-/// How many times finer than its lattice a spline is, along each axis: >= 1.
+/// How many times finer than the spectrum's lattice a spline is along each axis, >= 1.
 using Padding = std::array<int, 3>;
 
-/// Periodic cubic B-spline in three dimensions with period 1 along each axis. Positions are double; what follows from
-/// the fraction of a cell is single precision (rounding 1e-6 of the largest value). Immutable, thread-safe.
+/// Periodic cubic B-spline in three dimensions, with period 1 along each axis. Immutable, thread-safe.
 class PeriodicSpline3 {
   public:
-    /// spectrum: half-complex, size[0] × size[1] × (size[2]/2 + 1), Hermitian; the spline passes through its
-    /// unnormalised inverse transform on a lattice `padding` times finer.
+    /// spectrum: half-complex, size[0] × size[1] × (size[2]/2 + 1), Hermitian. The spline passes through the
+    /// spectrum's unnormalised inverse transform on a lattice `padding` times finer.
     PeriodicSpline3(FftVector<complex32> spectrum, const std::array<int, 3>& size, const Padding& padding = {1, 1, 1});
 
     struct Sample {
         double value;
         dvec3 gradient;  ///< per period
     };
-    /// At x [periods], any finite value (reduced modulo 1).
+    /// At x [periods], any finite value. Single precision after the cell is found: rounding is 1e-6 of the largest
+    /// value.
     Sample sample(const dvec3& x) const;
 
-    /// The same in double precision throughout, for integrators of high order: as smooth as the spline is.
+    /// The same in double precision throughout, for integrators of high order, which rounding would disturb.
     IndexSample smooth_sample(const dvec3& x) const;
-    /// With the second derivatives [per period²]: the exact derivative of that gradient, continuous, piecewise linear.
+    /// With the second derivatives [per period²]: the exact derivative of that gradient, continuous and piecewise
+    /// linear.
     IndexJet jet(const dvec3& x) const;
 
-    /// Bounds of the value anywhere: a spline lies within its coefficients' range.
+    /// Bounds of the value anywhere. A spline lies within the range of its coefficients.
     float lower_bound() const { return lower_; }
     float upper_bound() const { return upper_; }
 
@@ -57,8 +66,8 @@ class PeriodicSpline3 {
 /// Transfer of the cubic B-spline at its knots, (2 + cos θ)/3, for a phase advance of θ = 2π turns a cell.
 double spline_transfer(double turns);
 
-/// Rms error, relative to e^{ikx}, of the cubic spline through its samples, and of the spline's slope; |turns| <= 1/2 a
-/// cell. The spline holds the mode and its aliases θ + 2πm with weights ∝ (θ + 2πm)^-4. *added*
+/// Rms error, relative to e^{ikx}, of the cubic spline through its samples, and of the spline's slope. turns: of the
+/// mode a cell, |turns| <= 1/2. The spline holds the mode and its aliases θ + 2πm, with weights ∝ (θ + 2πm)^-4. *added*
 double spline_error(double turns);
 double spline_slope_error(double turns);
 

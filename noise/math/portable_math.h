@@ -1,12 +1,12 @@
 /// Elementary functions that give the same bits on every x86-64 processor and C library.
 ///
-/// The C library picks fused or unfused code by processor, so its sin, exp or pow may differ in the last bit from one
-/// render node to the next. What reaches a pixel goes through these instead (or through the single-precision relatives
-/// that fourier_random.cpp and screen_band.cpp keep for their batches of Gaussians). They use only
-/// + - * / sqrt, conversions and integer operations in a fixed order, hence vectorise under EIKONAL_CLONES without
-/// changing a bit. All are double; NaN in gives NaN out.
+/// The C library picks fused or unfused code by processor. Its sin, exp or pow may therefore differ in the last bit
+/// between two render nodes. Whatever reaches a pixel goes through the functions below instead, or through the
+/// single-precision ones that fourier_random.cpp and screen_band.cpp keep for batches of Gaussians. They use only
+/// + - * / sqrt, conversions and integer operations in a fixed order, so they vectorise under EIKONAL_CLONES without a
+/// change of bits. All are double precision. NaN gives NaN.
 ///
-///   function             range                     maximal error (tests/portable_math_test.cpp checks these constants)
+///   function             range                     maximal error (tests/noise/math/portable_math_test.cpp)
 ///   sincos_turns(x)      |x| <= 2^40 turns         kSincosError absolute; exact at multiples of 1/4
 ///   exp(x)               all; 0 below -745, inf above 709.78     kExpError relative (normal results)
 ///   log(x)               positive, normal or not   kLogError relative (absolute near x = 1 is as good)
@@ -27,9 +27,9 @@ inline constexpr double kLogError = 6e-16;
 inline constexpr double kPi = 3.141592653589793238462643383279502884;
 inline constexpr double kTwoPi = 2 * kPi;
 
-/// s = sin(2πx), c = cos(2πx). The argument is in turns, so that reduction is exact. Branch-free.
+/// s = sin(2πx), c = cos(2πx). The argument is in turns, so its reduction is exact. Free of branches.
 inline void sincos_turns(double x, double& s, double& c) {
-    // Nearest multiple of 1/4 by adding 1.5·2^52; the low bits of the sum hold the quadrant.
+    // Adding 1.5·2^52 rounds to the nearest multiple of 1/4. The low bits of the sum hold the quadrant.
     constexpr double kShifter = 6755399441055744.0;
     const double shifted = 4 * x + kShifter;
     const auto quadrant = std::bit_cast<std::uint64_t>(shifted);
@@ -58,7 +58,7 @@ inline void sincos_turns(double x, double& s, double& c) {
     c = std::bit_cast<double>(std::bit_cast<std::uint64_t>(swap ? sin_a : cos_a) ^ cos_sign);
 }
 
-/// sin and cos of radians; the reduction to turns costs |x| · 1e-16 of absolute accuracy.
+/// sin and cos of radians. The reduction to turns costs |x| · 1e-16 of absolute accuracy.
 inline void sincos(double x, double& s, double& c) {
     sincos_turns(x * (1 / kTwoPi), s, c);
 }
@@ -78,7 +78,7 @@ inline double tan(double x) {
     return s / c;
 }
 
-/// e^x. Branch-free but for the selects at the ends of the range.
+/// e^x. Free of branches, except for selects at the ends of the range.
 inline double exp(double x) {
     constexpr double kLog2E = 1.4426950408889634074;
     constexpr double kLn2Hi = 6.93147180369123816490e-01, kLn2Lo = 1.90821492927058770002e-10;
@@ -102,7 +102,7 @@ inline double exp(double x) {
     p = p * r + 1.0 / 6.0;
     p = p * r + 0.5;
     const double e = 1.0 + (r + r * r * p);
-    // 2^n in two factors, so that subnormal results and 2^1024 are reached without a special case.
+    // 2^n is split into two factors. Subnormal results and 2^1024 then need no special case.
     const auto k = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(shifted) << 12) >> 12;  // n, sign-extended
     const std::int64_t half = k >> 1;
     const double a = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + half) << 52);
@@ -111,7 +111,7 @@ inline double exp(double x) {
     return x > 709.782712893384 ? std::numeric_limits<double>::infinity() : (x != x ? x : result);
 }
 
-/// Natural logarithm; -inf at 0, NaN below.
+/// Natural logarithm. -inf at 0, NaN below.
 inline double log(double x) {
     constexpr double kLn2Hi = 6.93147180369123816490e-01, kLn2Lo = 1.90821492927058770002e-10;
     const bool tiny = x < std::numeric_limits<double>::min();
@@ -121,7 +121,7 @@ inline double log(double x) {
     const std::uint64_t shifted = bits - 0x3fe6a09e667f3bcdULL;
     const auto e = static_cast<double>((static_cast<std::int64_t>(shifted) >> 52) - (tiny ? 54 : 0));
     const double m = std::bit_cast<double>((shifted & 0x000fffffffffffffULL) + 0x3fe6a09e667f3bcdULL);
-    // log m = 2 atanh(s), s = (m-1)/(m+1), |s| <= 0.1716; written as f - (f²/2 - s(f²/2 + R)) to keep f exact.
+    // log m = 2 atanh(s), s = (m-1)/(m+1), |s| <= 0.1716. Written as f - (f²/2 - s(f²/2 + R)), it keeps f exact.
     const double f = m - 1;
     const double s = f / (2 + f);
     const double z = s * s;
@@ -142,7 +142,7 @@ inline double log(double x) {
     return x == 0 ? -std::numeric_limits<double>::infinity() : (x > 0 ? x : std::numeric_limits<double>::quiet_NaN());
 }
 
-/// x^y for x >= 0; pow(0, y) is 0 for y > 0, 1 for y = 0, inf for y < 0.
+/// x^y for x >= 0. pow(0, y) is 0 for y > 0, 1 for y = 0 and inf for y < 0.
 inline double pow(double x, double y) {
     if (y == 0) return 1;
     return exp(y * log(x));

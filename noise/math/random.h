@@ -1,8 +1,9 @@
-/// Counter-based random numbers: value i of a stream is a pure function of (stream, i), so that any frame, thread or
-/// order draws the same. Every consumer has its own named stream derived from the scene's seed.
+/// Counter-based random numbers: value i of a stream is a pure function of (stream, i). Any frame, thread or order
+/// draws the same numbers. Every consumer has a named stream of its own, derived from the scene's seed.
 ///
-/// The generator hashes (stream, counter) with two rounds of the 64-bit finaliser of Stafford's variant 13
-/// ("splitmix"). Gaussians by Box-Muller on 32-bit uniforms: |value| <= 6.66, resolution 2^-32 in the uniforms.
+/// The generator hashes (stream, counter) by two rounds of the 64-bit finaliser of Stafford's variant 13 ("splitmix").
+/// Gaussians come from Box-Muller on 32-bit uniform numbers: |value| <= 6.66, and the uniform numbers have a resolution
+/// of 2^-32. No function fails.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,7 @@ constexpr std::uint64_t mix64(std::uint64_t x) {
 /// A named stream of random numbers.
 class RandomStream {
   public:
-    /// name: what draws from it, e.g. "lattice", so that no two consumers share numbers. index: e.g. of a screen.
+    /// name: the consumer, e.g. "lattice". No two consumers share a name. index: distinguishes streams of one consumer.
     constexpr RandomStream(std::uint64_t seed, std::string_view name, std::uint64_t index = 0) {
         std::uint64_t h = 0xcbf29ce484222325ULL;
         for (const char c : name) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
@@ -39,10 +40,10 @@ class RandomStream {
     /// Uniform in [0, 1), 53 bits.
     constexpr double uniform(std::uint64_t i) const { return static_cast<double>(bits(i) >> 11) * 0x1p-53; }
 
-    /// Two independent standard Gaussians.
+    /// Draws two independent standard Gaussians.
     void gaussians(std::uint64_t i, double& a, double& b) const {
         const std::uint64_t r = bits(i);
-        // u1 in (0, 1], so that the logarithm is finite
+        // u1 is in (0, 1], so that the logarithm is finite.
         const double u1 = (static_cast<double>(static_cast<std::uint32_t>(r)) + 1.0) * 0x1p-32;
         const double u2 = static_cast<double>(static_cast<std::uint32_t>(r >> 32)) * 0x1p-32;
         const double radius = std::sqrt(-2 * portable::log(u1));

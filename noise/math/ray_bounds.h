@@ -1,8 +1,9 @@
-/// Lengths of the way along a straight ray to the bounds of a medium: planes, layers, spheres and cylinders.
+/// Distances along a straight ray to the bounds of a medium: planes, layers, spheres and cylinders.
 ///
-/// s: coordinate of the ray's start across a plane, rate: what it gains a metre of way. `Chord` of a round body comes
-/// from the vector `from` of its centre (or axis) to the start and the ray's direction, both without their part along
-/// the axis for a cylinder. All finite or infinite, never NaN, for finite input; "never" is infinity.
+/// A plane or layer sees the ray as its start's coordinate s across the plane, and the rate at which s grows a metre of
+/// way. A round body sees it as the vector `from` from the body's centre (or axis) to the start, and the direction. For
+/// a cylinder neither vector has a component along the axis. Finite input gives finite results or infinity, never NaN.
+/// Infinity (kNever) means that the ray never gets there.
 #pragma once
 
 #include <cmath>
@@ -12,16 +13,17 @@
 
 namespace eikonal {
 
-/// A way into a body or layer below this part of its size is none, so that rounding does not stop a ray before it.
+/// A way into a body or layer that is shorter than this part of its size counts as zero. Without it, rounding could
+/// stop a ray just before the body for ever.
 inline constexpr double kTouch = 1e-9;
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// To the plane s = 0, if it is ahead: > 0.
+/// Way to the plane s = 0 if it lies ahead (> 0), else kNever.
 inline double way_to_plane(double s, double rate) {
     return (s > 0 && rate < 0) || (s < 0 && rate > 0) ? -s / rate : kNever;
 }
 
-/// To the layer low <= s <= high, high > 0; 0 within.
+/// Way to the layer low <= s <= high, high > 0. Zero within.
 inline double way_into_layer(double s, double rate, double low, double high) {
     const double touch = kTouch * high;
     if (s > high + touch) return way_to_plane(s - high, rate);
@@ -29,7 +31,7 @@ inline double way_into_layer(double s, double rate, double low, double high) {
     return 0;
 }
 
-/// Where a line enters and leaves a sphere or cylinder, measured along it from its start; never, twice, if it misses.
+/// Where a line enters and leaves a sphere or cylinder, measured from the line's start. Both are kNever if it misses.
 struct Chord {
     double enter = kNever, leave = kNever;
 
@@ -45,9 +47,9 @@ struct Chord {
         leave = closest + half;
     }
 
-    /// To the next end ahead: > 0.
+    /// Way to the next of the two ends that lies ahead (> 0), else kNever.
     double next() const { return enter > 0 ? enter : (leave > 0 ? leave : kNever); }
-    /// To the body; 0 inside it.
+    /// Way to the body. Zero inside it.
     double into() const {
         if (!(leave > 0) || enter == kNever) return kNever;
         return enter > kTouch * (leave - enter) ? enter : 0;

@@ -7,7 +7,7 @@
 /// Only n - 1 is ever stored. Range: T > 0 [K]; wavelengths 0.3 … 1.7 µm.
 #pragma once
 
-#include "noise/medium/media.h"
+#include "noise/medium/optics.h"
 
 namespace eikonal {
 

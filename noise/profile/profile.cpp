@@ -7,6 +7,7 @@
 
 #include "noise/math/portable_math.h"
 #include "noise/math/ray_bounds.h"
+#include "noise/profile/profile_spec.h"
 
 namespace eikonal {
 namespace {

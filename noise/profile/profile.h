@@ -15,7 +15,7 @@
 #pragma once
 
 #include "noise/math/index_sample.h"
-#include "noise/medium/media.h"
+#include "noise/profile/profile_spec.h"
 
 namespace eikonal {
 

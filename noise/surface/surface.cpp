@@ -6,6 +6,8 @@
 #include <glm/matrix.hpp>
 
 #include "noise/math/portable_math.h"
+#include "noise/medium/optics.h"
+#include "noise/surface/surface_spec.h"
 
 namespace eikonal {
 namespace {

@@ -14,8 +14,9 @@
 #pragma once
 
 #include "noise/math/index_sample.h"
-#include "noise/medium/media.h"
+#include "noise/medium/optics.h"
 #include "noise/medium/refractivity.h"
+#include "noise/surface/surface_spec.h"
 
 namespace eikonal {
 

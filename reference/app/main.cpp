@@ -1,48 +1,32 @@
 /// eikonal-trace: declare options, validate, run, report. Exit statuses as in reference/README.md.
 #include <fmt/format.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
 
-#include <cstdio>
-
-#include "noise/base/error.h"
 #include "reference/app/commands.h"
-#include "warp/image/interrupt.h"
-#include "warp/image/picture.h"
-#include "warp/scene/scene_place.h"
+#include "warp/program/exit_status.h"
+#include "warp/program/interrupt.h"
+#include "warp/program/thread_limit.h"
 
 namespace eikonal::reference {
 
-int run(const Information& information) {
+int run(const Information& information, const std::stop_token&) {
     fmt::print("{}", information.text);
     return 0;
 }
 
 namespace {
 
-int run_command(const Command& command) {
+int run_command(const Command& command, const std::stop_token& stop) {
     return std::visit(
-        [](const auto& options) {
-            int threads = 0;
-            if constexpr (requires { options.common; }) threads = options.common.threads;
-            if (threads == 0) threads = oneapi::tbb::info::default_concurrency();
-            const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                                    static_cast<std::size_t>(threads));
-            set_image_threads(threads);
-            try {
-                return run(options);
-            } catch (const UserError& error) {
-                if constexpr (requires { options.common; })
-                    throw UserError(with_place(error.what(), options.common.scene, options.common.settings));
-                throw;
+        [&](const auto& options) {
+            if constexpr (requires { options.common; }) {
+                const ThreadLimit limit(options.common.threads);
+                return with_scene_places(options.common.scene, options.common.settings,
+                                         [&] { return run(options, stop); });
+            } else {
+                return run(options, stop);
             }
         },
         command);
-}
-
-int fail(const std::string& text, int status) {
-    fmt::print(stderr, "eikonal-trace: {}\n", text);
-    return status;
 }
 
 }  // namespace
@@ -50,17 +34,8 @@ int fail(const std::string& text, int status) {
 
 int main(int argc, char** argv) {
     using namespace eikonal;
-    constexpr int kFrameFailed = 1, kWrongUsage = 2;
-    catch_interrupts("eikonal-trace");
-    try {
-        return reference::run_command(reference::parse_options(argc, argv));
-    } catch (const UserError& error) {
-        return reference::fail(error.what(), kWrongUsage);
-    } catch (const FrameError& error) {
-        return reference::fail(error.what(), kFrameFailed);
-    } catch (const std::bad_alloc&) {
-        return reference::fail("not enough memory; a smaller picture or lattice needs less", kFrameFailed);
-    } catch (const std::exception& error) {
-        return reference::fail(std::string("internal error, please report it: ") + error.what(), kFrameFailed);
-    }
+    const Interrupts interrupts("eikonal-trace");
+    const ProgramWords words{"eikonal-trace", "a smaller picture or lattice needs less", "the same command goes on"};
+    return exit_status(
+        words, [&] { return reference::run_command(reference::parse_options(argc, argv), interrupts.token()); });
 }

@@ -11,6 +11,7 @@
 #include "reference/compare/comparison_report.h"
 #include "reference/compare/comparison_table.h"
 #include "warp/image/sequence.h"
+#include "warp/program/option_names.h"
 
 namespace eikonal::reference {
 namespace {
@@ -31,14 +32,22 @@ std::string compared_scene(const std::filesystem::path& folder) {
     return name.empty() ? "something else" : name;
 }
 
+/// Models' refusals with settings spelled as options.
+Comparison in_words_of_the_program(Comparison comparison) {
+    for (ModelResult& model : comparison.models) model.refusal = with_options(model.refusal);
+    return comparison;
+}
+
 }  // namespace
 
-int run(const CompareOptions& o) {
+int run(const CompareOptions& o, const std::stop_token& stop) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
     std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
     std::sort(frames.begin(), frames.end());  // in the order of time, however they are listed
     const std::filesystem::path page = o.output / "index.html";
-    Comparer comparer(scene, o.compare);
+    CompareSettings settings = o.compare;
+    settings.stop = stop;
+    Comparer comparer(scene, settings);
     std::error_code ignored;
     if (!o.overwrite && std::filesystem::exists(page, ignored)) {
         const std::string there = compared_scene(o.output), name = scene.file.filename().string();
@@ -57,13 +66,14 @@ int run(const CompareOptions& o) {
         try {
             TileProgress progress(fmt::format("frame {}", frame), comparer.tile_count());
             const Comparer::Frame& compared = comparer.add(frame, [&] { progress.tile_done(); });
-            std::vector<PagePicture> written = write_pictures(o.output, comparer.result(), compared);
+            std::vector<PagePicture> written =
+                write_pictures(o.output, in_words_of_the_program(comparer.result()), compared);
             if (on_page(i, frames.size())) pages.push_back({frame, std::move(written)});
         } catch (const FrameError& error) {
             throw FrameError(fmt::format("frame {}: {}", frame, error.what()));
         }
     }
-    const Comparison result = comparer.result();
+    const Comparison result = in_words_of_the_program(comparer.result());
     write_report(o.output, result, pages);
     fmt::print("{}\nwrote {}\n", table_text(result), page.string());
     return 0;

@@ -31,7 +31,7 @@ const char* ending(const BentHit& end) {
 
 }  // namespace
 
-int run(const PathOptions& o) {
+int run(const PathOptions& o, const std::stop_token&) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
     const SceneAir air(scene, o.rays, {o.length, o.tolerance, false});
     // From the surface itself a ray may start.

@@ -13,7 +13,6 @@
 #include "reference/app/tile_progress.h"
 #include "reference/trace/frame_file.h"
 #include "warp/image/atomic_file.h"
-#include "warp/image/interrupt.h"
 #include "warp/image/sequence.h"
 
 namespace eikonal::reference {
@@ -118,12 +117,12 @@ RenderedFrame render(const Renderer& renderer, const RenderOptions& o, int frame
 
 }  // namespace
 
-int run(const RenderOptions& o) {
+int run(const RenderOptions& o, const std::stop_token& stop) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
     const std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
     const FilePattern pattern = checked_pattern(o, frames.size());
     RenderSettings settings = o.render;
-    settings.cancelled = interrupted;
+    settings.stop = stop;
     const Renderer renderer(scene, settings);
     for (const int frame : frames) renderer.check_camera(frame);
     if (o.explain) {

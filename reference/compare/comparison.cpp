@@ -11,11 +11,11 @@
 
 #include "noise/base/error.h"
 #include "reference/compare/resident_memory.h"
-#include "warp/image/interrupt.h"
 #include "warp/pixels/depth_range.h"
 #include "warp/resample/resample.h"
-#include "warp/scene/background.h"
 #include "warp/scene/message.h"
+#include "warp/shimmer/depth_input.h"
+#include "warp/shimmer/shot.h"
 
 namespace eikonal::reference {
 namespace {
@@ -40,31 +40,27 @@ bool answered(const RenderedFrame& truth, std::size_t i) {
     return truth.id[i] >= 0;
 }
 
-DisplacerSettings displacer_settings(const Scene& scene, std::optional<Model> model) {
-    DisplacerSettings settings;
+Background warp_background(const Scene& scene) {
+    return background_of(scene, {KnownDepth::Kind::Map, {}, {}, {}});
+}
+
+ShotSettings shot_settings(const Scene& scene, std::optional<Model> model, const std::stop_token& stop) {
+    ShotSettings settings;
     const auto [width, height] = scene.camera.resolution.value_or(kDefaultResolution);
-    settings.width = width;
-    settings.height = height;
-    settings.fps = scene.time.fps.value_or(kDefaultFps);
-    settings.far = scene.plate.far.value_or(default_far(scene));
-    settings.deepest = kInfiniteDepth;
-    settings.model = model;
-    settings.sample_errors = true;
-    settings.cancelled = interrupted;
+    settings.view.display = {0, 0, width, height};
+    settings.background = warp_background(scene);
+    settings.strength.model.model = model;
+    settings.state_errors = true;
+    settings.stop = stop;
     return settings;
 }
 
 /// Depth as the warp takes it from the plate's channel Z.
-DepthPlane depth_plane(const RenderedFrame& plate, const PixelWindow& window, double far, bool mirage) {
+DepthPlane depth_plane(const RenderedFrame& plate, const PixelWindow& window, const Background& background) {
     std::vector<float> metres = plate.depth;
-    for (float& z : metres) z = z < kInfiniteDepth ? std::max(z, kNearestDepth) : static_cast<float>(far);
-    if (mirage) put_background_behind(metres, far);
+    for (float& z : metres) z = z < kInfiniteDepth ? std::max(z, kNearestDepth) : static_cast<float>(background.far);
+    if (background.mirage) put_background_behind(metres, background.far);
     return {window, std::move(metres)};
-}
-
-/// Where the warp has its background, as far as there is any [m].
-double background_depth(const DepthPlane& depth, double far, bool mirage) {
-    return mirage ? std::max<double>(far, depth.farthest()) : far;
 }
 
 /// One flag a pixel.
@@ -82,39 +78,39 @@ RenderSettings render_settings(const CompareSettings& settings, bool straight, b
     render.samples = settings.samples;
     render.straight = straight;
     render.colour = colour;
-    render.cancelled = interrupted;
+    render.stop = settings.stop;
     if (straight) return render;
     render.rays = settings.rays;
     render.magnification = colour && follows_bundles(settings.rays.integrator);
     return render;
 }
 
-void map(const Displacer& displacer, int frame, const DepthPlane& depth, ModelFrame& into) {
-    into.uv.resize(2 * depth.window().area());
-    displacer.at(frame, depth.nearest(), depth.farthest())
-        .map(depth.window(), &depth, DepthMeeting::March, into.uv.data());
+void map(const eikonal::Shot& shot, int frame, const SharedDepth& depth, ModelFrame& into) {
+    const PixelWindow& window = std::get<DepthPlane>(depth).window();
+    into.uv.resize(2 * window.area());
+    shot.map(frame, depth, window, into.uv.data());
 }
 
 /// A row of the table, and what its figures are made from.
 struct Contender {
     ModelResult result;
-    std::optional<Model> model;          ///< asked for
-    std::optional<Displacer> displacer;  ///< none: the plate itself, or a model that does not apply
+    std::optional<Model> model;           ///< asked for
+    std::unique_ptr<eikonal::Shot> shot;  ///< none: the plate itself, or a model that does not apply
     std::vector<float> smooth, silhouettes, temporal;
     std::vector<double> map_seconds, warp_seconds, stated;
     std::vector<PictureError> pictures;
 
     /// Fills uv and warped, and times it.
-    void answer(int frame, const DepthPlane& depth, const std::vector<float>& plate, ModelFrame& into) {
-        const PixelWindow& window = depth.window();
+    void answer(int frame, const SharedDepth& depth, const std::vector<float>& plate, ModelFrame& into) {
+        const PixelWindow& window = std::get<DepthPlane>(depth).window();
         into.uv.assign(2 * window.area(), 0);
         into.warped = plate;
-        if (!displacer) return;
+        if (!shot) return;
         std::vector<double> maps, warps;
         const auto begin = Clock::now();
         while (maps.size() < kTimedRuns && (maps.empty() || seconds_since(begin) < kTimingSeconds)) {
             auto start = Clock::now();
-            map(*displacer, frame, depth, into);
+            map(*shot, frame, depth, into);
             maps.push_back(seconds_since(start));
             start = Clock::now();
             const std::ptrdiff_t stride = 4 * static_cast<std::ptrdiff_t>(window.width);
@@ -122,9 +118,7 @@ struct Contender {
                      {into.warped.data(), window, 4, stride}, {});
             warps.push_back(seconds_since(start));
         }
-        stated.push_back(displacer->at(frame, depth.nearest(), depth.farthest())
-                             .stated_error(window, &depth, DepthMeeting::March, into.uv.data())
-                             .p95);
+        stated.push_back(shot->stated_error(frame, depth, window, into.uv.data()).p95);
         map_seconds.push_back(median(std::move(maps)));
         warp_seconds.push_back(median(std::move(warps)));
     }
@@ -181,7 +175,7 @@ void check_names(const std::vector<std::string>& models) {
     for (const auto& [name, model] : kModelNames) known.push_back(name);
     for (const std::string& name : models)
         if (std::find(known.begin(), known.end(), name) == known.end())
-            throw UserError(fmt::format("--models: '{}' is none of {}{}", name, fmt::join(known, "|"),
+            throw UserError(fmt::format("`models`: '{}' is none of {}{}", name, fmt::join(known, "|"),
                                         scene_file::did_you_mean(name, known)));
 }
 
@@ -192,17 +186,19 @@ Contender contender(std::string_view name) {
 }
 
 /// The plate itself, each model, and the default where it is none of them.
-std::vector<Contender> contenders(const Scene& scene, const std::vector<std::string>& wanted) {
+std::vector<Contender> contenders(const Scene& scene, const CompareSettings& settings) {
+    const std::vector<std::string>& wanted = settings.models;
     const auto is_wanted = [&](std::string_view name) {
         return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
     };
-    const std::vector<std::string> usual = Displacer(scene, displacer_settings(scene, {})).models();
+    const std::vector<std::string> usual =
+        eikonal::Shot(scene, shot_settings(scene, {}, settings.stop)).displacer().models();
     std::vector<Contender> list;
     list.push_back(contender(kNoModel));
     const auto settle = [&](Contender& c, std::optional<Model> model) {
         const auto start = Clock::now();
         c.model = model;
-        c.displacer.emplace(scene, displacer_settings(scene, model));
+        c.shot = std::make_unique<eikonal::Shot>(scene, shot_settings(scene, model, settings.stop));
         c.result.setup_seconds = seconds_since(start);
     };
     bool has_default = false;
@@ -212,18 +208,18 @@ std::vector<Contender> contenders(const Scene& scene, const std::vector<std::str
         try {
             settle(c, model);
             if (usual.empty())
-                c.result.refusal = c.displacer->mirages()
+                c.result.refusal = c.shot->displacer().mirages()
                                        ? "no medium of this scene takes a model: surfaces bend rays exactly"
                                        : "nothing in this scene moves pixels";
-            else if (c.displacer->models() == usual &&
+            else if (c.shot->displacer().models() == usual &&
                      std::count(usual.begin(), usual.end(), name) != static_cast<std::ptrdiff_t>(usual.size()))
                 c.result.refusal = fmt::format("the same as default, which takes {}", fmt::join(usual, ", "));
-            else if (c.displacer->models() == usual)
+            else if (c.shot->displacer().models() == usual)
                 c.result.is_default = has_default = true;
         } catch (const UserError& refusal) {
             c.result.refusal = refusal.what();
         }
-        if (!c.result.applies()) c.displacer.reset();
+        if (!c.result.applies()) c.shot.reset();
         list.push_back(std::move(c));
     }
     if (is_wanted(kDefaultModel) && !has_default) {
@@ -232,7 +228,7 @@ std::vector<Contender> contenders(const Scene& scene, const std::vector<std::str
         settle(c, {});
         list.push_back(std::move(c));
     }
-    if (std::none_of(list.begin(), list.end(), [](const Contender& c) { return c.displacer.has_value(); }))
+    if (std::none_of(list.begin(), list.end(), [](const Contender& c) { return c.shot != nullptr; }))
         throw UserError(list.back().result.refusal);
     return list;
 }
@@ -242,7 +238,7 @@ std::vector<Contender> contenders(const Scene& scene, const std::vector<std::str
 struct Comparer::Shot {
     Scene scene;
     CompareSettings settings;
-    double far;
+    Background sky;  ///< as the warp has it
     std::vector<Contender> contenders;
     Renderer plate, centers, picture;
     std::vector<Frame> frames;  ///< at most two: the one before, the one added last
@@ -254,8 +250,8 @@ struct Comparer::Shot {
     Shot(const Scene& s, const CompareSettings& set)
         : scene(s),
           settings(set),
-          far(displacer_settings(s, {}).far),
-          contenders(reference::contenders(scene, set.models)),
+          sky(warp_background(s)),
+          contenders(reference::contenders(scene, set)),
           plate(scene, render_settings(set, true, true)),
           centers(scene, render_settings(set, false, false)),
           picture(scene, render_settings(set, false, true)) {}
@@ -298,10 +294,9 @@ const Comparer::Frame& Comparer::add(int number, const std::function<void()>& ti
     frame.number = number;
     frame.plate = s.plate.render(number, tile_done);
     const PixelWindow window{0, 0, frame.plate.width, frame.plate.height};
-    const bool mirage = has_mirage(s.scene);
-    const DepthPlane depth = depth_plane(frame.plate, window, s.far, mirage);
+    const SharedDepth depth = depth_plane(frame.plate, window, s.sky);
     auto start = Clock::now();
-    frame.truth = s.centers.render(number, tile_done, background_depth(depth, s.far, mirage));
+    frame.truth = s.centers.render(number, tile_done, s.sky.behind(range_of(depth).farthest));
     s.tracer_seconds.push_back(seconds_since(start));
     start = Clock::now();
     RenderedFrame coloured = s.picture.render(number, tile_done);
@@ -316,9 +311,9 @@ const Comparer::Frame& Comparer::add(int number, const std::function<void()>& ti
         Contender& c = s.contenders[m];
         ModelFrame& answer = frame.models[m];
         if (!c.result.applies()) continue;
-        if (before == nullptr && c.displacer) {
+        if (before == nullptr && c.shot) {
             const MemoryWatch memory;
-            map(Displacer(s.scene, displacer_settings(s.scene, c.model)), number, depth, answer);
+            map(eikonal::Shot(s.scene, shot_settings(s.scene, c.model, s.settings.stop)), number, depth, answer);
             c.result.memory = memory.most_grown();
         }
         c.answer(number, depth, frame.plate.color, answer);
@@ -346,15 +341,14 @@ Comparison Comparer::result() const {
     c.tracer_error = s.answers > 0 ? s.estimated / s.answers : 0;
     c.rms = s.answers > 0 ? std::sqrt(s.squares / s.answers) : 0;
     c.largest = s.largest;
-    c.far = s.far;
+    c.far = s.sky.far;
     c.silhouettes = s.edges / s.pixels;
     c.background = s.background / s.pixels;
     if (follows_bundles(s.settings.rays.integrator)) c.folded = s.folded / s.pixels;
     c.trapped = s.trapped / s.pixels;
     c.without_index = s.without_index / s.pixels;
     for (const Contender& contender : s.contenders) {
-        if (contender.displacer && c.focusing_variance == 0)
-            c.focusing_variance = contender.displacer->focusing_variance(s.far);
+        if (contender.shot && c.focusing_variance == 0) c.focusing_variance = contender.shot->focusing_variance();
         c.models.push_back(contender.summary());
     }
     return c;

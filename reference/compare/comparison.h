@@ -18,12 +18,12 @@
 
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "reference/compare/error_measures.h"
 #include "reference/trace/render.h"
-#include "warp/displace/displacer.h"
 #include "warp/pixels/linear_image.h"
 
 namespace eikonal::reference {
@@ -42,6 +42,7 @@ struct CompareSettings {
     RaySettings rays{.tolerance_px = kTruthTolerance};
     int samples = 16;                 ///< of colour a pixel
     std::vector<std::string> models;  ///< rows wanted besides `none`; empty: all
+    std::stop_token stop = {};        ///< once requested, a frame ends with a FrameError
 };
 
 /// One model's answer for one frame.

@@ -134,7 +134,7 @@ std::string choice(const std::vector<PagePicture>& pictures, std::string_view na
     return fmt::format("<label>{}<select id=\"{}\">{}</select></label>\n", label, name, options);
 }
 
-/// Which frame is shown; nothing where there is one only.
+/// The controls that choose the frame. Empty if there is only one.
 std::string frame_choice(const std::vector<PageFrame>& frames) {
     if (frames.size() < 2) return "";
     return fmt::format(
@@ -144,7 +144,7 @@ std::string frame_choice(const std::vector<PageFrame>& frames) {
 }
 
 std::string slider(const Comparison& c, const std::vector<PageFrame>& frames) {
-    const std::vector<PagePicture>& pictures = frames.back().pictures;  // which lack nothing
+    const std::vector<PagePicture>& pictures = frames.back().pictures;  // the last frame has all pictures
     std::size_t right = std::min<std::size_t>(1, pictures.size() - 1);
     for (std::size_t i = 0; i < pictures.size(); ++i)
         if (pictures[i].is_default) right = i;
@@ -172,7 +172,7 @@ std::string figure(const Comparison& c, const PagePicture& picture) {
         c.width, c.height, escaped(picture.label), source(picture), scale, escaped(picture.label));
 }
 
-/// Every frame's pictures; all but the first frame's are hidden.
+/// Every frame's pictures. All but those of the first frame are hidden.
 std::string gallery(const Comparison& c, const std::vector<PageFrame>& frames) {
     std::string list;
     for (const PageFrame& frame : frames) {
@@ -241,7 +241,7 @@ std::string escaped(const std::string& text) {
 
 bool on_page(std::size_t i, std::size_t count) {
     if (count <= kMostPageFrames) return true;
-    // frame k of the page is the shot's k (count - 1)/(kMostPageFrames - 1)
+    // Frame k of the page is the shot's frame k (count - 1)/(kMostPageFrames - 1).
     const std::size_t k = (i * (kMostPageFrames - 1) + count - 2) / (count - 1);
     return k * (count - 1) / (kMostPageFrames - 1) == i;
 }

@@ -33,7 +33,7 @@ LinearImage image_of(const std::vector<float>& rgba, int width, int height) {
     return {window, window, 1, rgba};
 }
 
-/// The end of a scale that no more than one pixel in a hundred is beyond.
+/// The end of a scale that at most one pixel in a hundred exceeds.
 double fitting_scale(const std::vector<float>& error) {
     std::vector<float> known;
     std::copy_if(error.begin(), error.end(), std::back_inserter(known), [](float e) { return e >= 0; });
@@ -63,7 +63,7 @@ std::vector<PagePicture> write_pictures(const std::filesystem::path& folder, con
                 write_png(file("warp-" + model.name), "warp: " + row_name(model), shown(frame.models[m].warped)));
             pictures.back().is_default = model.is_default;
         }
-        // the plate's own error is the true displacement
+        // The plate's own error is the true displacement.
         add_heat("error-" + model.name, warps ? "error: " + row_name(model) : "true displacement",
                  frame.models[m].error);
         if (!frame.models[m].change.empty())

@@ -11,7 +11,7 @@ namespace {
 
 using Statistics = ErrorStatistics ModelResult::*;
 
-/// mean … max of one set of pixels.
+/// The columns mean … max for one set of pixels.
 template <Statistics set>
 void add_errors(std::vector<Column>& list, ColumnGroup group, const std::string& prefix, bool brief) {
     const auto add = [&](const char* key, const char* heading, bool in_brief, auto value) {
@@ -34,7 +34,7 @@ std::optional<double> positive(double value) {
     return value > 0 ? std::optional(value) : std::nullopt;
 }
 
-/// Characters of UTF-8 text.
+/// The number of characters in UTF-8 text.
 std::size_t letters(const std::string& text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -45,7 +45,7 @@ std::string padded(const std::string& text, std::size_t width, bool right) {
     return right ? blanks + text : text + blanks;
 }
 
-/// Cells as lines of text: the first column to the left, figures to the right.
+/// Cells as lines of text. The first column is aligned to the left, figures to the right.
 std::string aligned(const std::vector<std::vector<std::string>>& rows) {
     std::vector<std::size_t> widths(rows.front().size());
     for (const auto& row : rows)

@@ -1,4 +1,4 @@
-/// The figures of a comparison as columns: one list, from which the CSV, the text and the page are made.
+/// The figures of a comparison as one list of columns. The CSV, the text and the page are made from it.
 #pragma once
 
 #include <optional>
@@ -14,31 +14,31 @@ enum class ColumnGroup { All, Smooth, Silhouettes, Temporal, Picture, Cost };
 
 struct Column {
     ColumnGroup group;
-    std::string key;                                                        ///< in the CSV
+    std::string key;                                                        ///< name in the CSV
     std::string heading;                                                    ///< for people, with its unit
     bool brief;                                                             ///< part of the page's first table
-    std::optional<double> (*value)(const Comparison&, const ModelResult&);  ///< none: there is no such figure
+    std::optional<double> (*value)(const Comparison&, const ModelResult&);  ///< nothing if there is no such figure
 };
 
 /// Every column that the comparison has figures for, in order.
 std::vector<Column> columns(const Comparison& comparison);
 std::string heading_of(ColumnGroup group);
 
-/// Three significant digits, without exponents where that is readable; "∞".
+/// A number with three significant digits, without an exponent where that is readable. "∞" for infinity.
 std::string readable(double value);
 /// Name of a model's row, and whether it is the default.
 std::string row_name(const ModelResult& model);
 
-/// What the scene is: label and text, in order.
+/// Facts about the scene in order, each with a label.
 struct Fact {
     std::string label, text;
 };
 std::vector<Fact> facts(const Comparison& comparison);
 
-/// "model,default,KEY,…", a row for each model that applies; figures that there are none of, or that are
-/// infinite, are empty.
+/// A CSV with the header "model,default,KEY,…" and a row for each model that applies. A figure that does not exist or
+/// is infinite is empty.
 std::string table_csv(const Comparison& comparison);
-/// Facts, a table for each group of columns, and the models that do not apply, with the reason.
+/// Text with the facts, a table for each group of columns, and the models that do not apply, with the reason.
 std::string table_text(const Comparison& comparison);
 
 }  // namespace eikonal::reference

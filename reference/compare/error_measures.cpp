@@ -19,7 +19,7 @@ namespace {
 
 using Plane = std::vector<double>;
 
-/// What a display shows of linear light.
+/// The value that a display shows for linear light.
 float limited(float v) {
     return v > 0 ? std::min(v, 1.0f) : 0.0f;
 }
@@ -33,7 +33,7 @@ Plane luma(std::span<const float> rgba) {
     return plane;
 }
 
-/// Weighted mean around each pixel, Gaussian, edge pixels repeated.
+/// The Gaussian-weighted mean around each pixel. Edge pixels are repeated.
 Plane blurred(const Plane& in, int width, int height) {
     std::array<double, 2 * kSsimRadius + 1> weights{};
     double sum = 0;
@@ -90,7 +90,7 @@ double psnr(std::span<const float> a, std::span<const float> b) {
 }
 
 double butteraugli(std::span<const float> a, std::span<const float> b, int width, int height) {
-    // the library finds nothing in pictures of less than 8 pixels a side: their edges are repeated
+    // The library finds no difference in pictures of less than 8 pixels a side, so their edges are repeated.
     const int w = std::max(width, 8), h = std::max(height, 8);
     const auto light = [&](std::span<const float> rgba) {
         std::vector<float> rgb;
@@ -106,7 +106,7 @@ double butteraugli(std::span<const float> a, std::span<const float> b, int width
     const JxlPixelFormat format{3, JXL_TYPE_FLOAT, JXL_NATIVE_ENDIAN, 0};
     const std::unique_ptr<JxlButteraugliApi, decltype(&JxlButteraugliApiDestroy)> eye(JxlButteraugliApiCreate(nullptr),
                                                                                       JxlButteraugliApiDestroy);
-    JxlButteraugliApiSetHFAsymmetry(eye.get(), 1);  // detail lost counts as much as detail won
+    JxlButteraugliApiSetHFAsymmetry(eye.get(), 1);  // lost and new detail count alike
     const std::unique_ptr<JxlButteraugliResult, decltype(&JxlButteraugliResultDestroy)> result(
         JxlButteraugliCompute(eye.get(), static_cast<std::uint32_t>(w), static_cast<std::uint32_t>(h), &format,
                               p.data(), p.size() * sizeof p[0], &format, q.data(), q.size() * sizeof q[0]),
@@ -165,7 +165,7 @@ std::vector<int> silhouette_distance(std::span<const float> depth, int width, in
             look(x, y, 1, 0);
             look(x, y, 0, 1);
         }
-    // forth and back over the rows: each pixel is one more than the least of the neighbours that come before it
+    // Two passes, forth and back over the rows. A pixel is one more than the least of the neighbours before it.
     const auto spread = [&](int x, int y, int back) {
         int& d = distance[at(x, y)];
         for (const auto& [nx, ny] : {std::array{x - back, y}, {x - 1, y - back}, {x, y - back}, {x + 1, y - back}})

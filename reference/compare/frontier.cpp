@@ -12,9 +12,9 @@
 namespace eikonal::reference {
 namespace {
 
-/// The drawing [SVG units].
+/// Size and margins of the drawing [SVG units].
 constexpr double kWidth = 720, kHeight = 420, kLeft = 74, kRight = 24, kTop = 24, kBottom = 58;
-/// Least error and time drawn, so that 0 has a place [px], [ms].
+/// The least error [px] and time [ms] that are drawn, so that 0 has a place.
 constexpr double kLeastError = 1e-4, kLeastTime = 1e-2;
 /// Height of a label, and width of a letter.
 constexpr double kLine = 16, kLetter = 7.2;
@@ -22,7 +22,7 @@ constexpr double kLine = 16, kLetter = 7.2;
 /// A logarithmic axis over whole decades.
 struct Axis {
     double low = 0, high = 1;   ///< log10
-    double start = 0, end = 1;  ///< where they are drawn
+    double start = 0, end = 1;  ///< their places in the drawing
 
     double at(double value) const { return start + (std::log10(value) - low) / (high - low) * (end - start); }
 };
@@ -47,16 +47,16 @@ std::string line(double x1, double y1, double x2, double y2, const char* kind) {
     return fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' class='{}'/>\n", x1, y1, x2, y2, kind);
 }
 
-/// Where a label may begin: left end of its baseline.
+/// A place where a label may begin: the left end of its baseline.
 struct Start {
     double x, y;
 };
 
-/// Labels that keep out of each other's way, and of the points.
+/// Places labels so that they overlap neither each other nor the points.
 class Labels {
   public:
     void avoid(double x, double y) { taken_.push_back({x - 7, y - 7, x + 7, y + 7}); }
-    /// A label at the first of the starts where there is room, or else at the last.
+    /// Places a label at the first of the starts where there is room, or else at the last.
     std::string place(const std::vector<Start>& starts, const char* kind, const std::string& words) {
         const auto free = [&](const Start& s) {
             const Box box = box_of(s, words);
@@ -68,7 +68,7 @@ class Labels {
         taken_.push_back(box_of(start, words));
         return text(start.x, start.y, "start", kind, words);
     }
-    /// A label beside a point: to its right, its left, above, below; then rows further off.
+    /// Places a label beside a point: to its right, its left, above, below, and then in rows farther off.
     std::string beside(double x, double y, const char* kind, const std::string& words) {
         constexpr int kRows = 6;
         const double width = width_of(words);
@@ -92,7 +92,7 @@ class Labels {
     std::vector<Box> taken_;
 };
 
-/// All rules begin with .plot, so that they touch nothing else of a page that the drawing stands in.
+/// All rules begin with .plot, so that they do not affect the rest of a page.
 constexpr const char* kStyle =
     "<style>.plot text{font:13px "
     "ui-sans-serif,system-ui,sans-serif;fill:#3d4248;paint-order:stroke;stroke:#fff;stroke-width:3px}.plot "
@@ -101,7 +101,7 @@ constexpr const char* kStyle =
     "stroke-dasharray:2 4}.plot .frontier{fill:none;stroke:#b3401e;stroke-width:2}.plot .other{fill:#fff;"
     "stroke:#3d4248;stroke-width:1.6}.plot .best{fill:#b3401e}</style>\n";
 
-/// Decades and what the axes are.
+/// The axes with their decades and titles.
 std::string grid(const Axis& x, const Axis& y) {
     std::string svg;
     for (double e = x.low; e <= x.high; ++e) {
@@ -121,7 +121,7 @@ std::string grid(const Axis& x, const Axis& y) {
     return svg;
 }
 
-/// Vertical and horizontal marks with their names, anywhere along them.
+/// Vertical and horizontal marks. Their names may stand anywhere along them.
 std::string tracer_mark(Labels& labels, double px) {
     const std::string name = "the tracer";
     std::vector<Start> starts;
@@ -182,7 +182,7 @@ std::string frontier_svg(const Comparison& c) {
     svg += fmt::format("<polyline points='{}' class='frontier'/>\n", path);
     Labels labels;
     std::string points, names;
-    for (const bool draw : {false, true})  // first what labels must avoid
+    for (const bool draw : {false, true})  // labels must avoid what is drawn, so it comes first
         for (std::size_t m = 0; m < c.models.size(); ++m) {
             const ModelResult& model = c.models[m];
             if (!model.applies() || model.name == kNoModel) continue;

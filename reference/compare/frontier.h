@@ -1,4 +1,4 @@
-/// Error against time: which models are worth their time, and the plot of it.
+/// Error against time: the models that are worth their time, and a plot of them.
 #pragma once
 
 #include <string>
@@ -8,12 +8,13 @@
 
 namespace eikonal::reference {
 
-/// Places in comparison.models of those that no other beats in both error (p95 of all pixels) and time, quickest first.
-/// The plate itself is none of them, but beats every model that is not more exact than no warp at all.
+/// Indices into comparison.models of the efficient models, quickest first. No other model beats them in both error (p95
+/// of all pixels) and time. The plate itself is not one of them. It beats every model that is not more exact than no
+/// warp.
 std::vector<std::size_t> efficient(const Comparison& comparison);
 
-/// An SVG document: every model's p95 error [px] over its time [ms], both logarithmic, the efficient ones joined;
-/// beside them the tracer's time and the error of the plate as it is.
+/// An SVG document that plots every model's p95 error [px] over its time [ms], both on logarithmic axes. A line joins
+/// the efficient models. The tracer's time and the error of the plate as it is are marked.
 std::string frontier_svg(const Comparison& comparison);
 
 }  // namespace eikonal::reference

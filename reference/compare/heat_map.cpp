@@ -27,7 +27,7 @@ Colour heat(double t) {
     return c;
 }
 
-/// Rows of five bits, the highest to the left.
+/// Letters as rows of five bits. The highest bit is on the left.
 using Glyph = std::array<unsigned, 7>;
 constexpr int kGlyphWidth = 5, kGlyphHeight = 7, kAdvance = 6;
 constexpr std::string_view kLetters = "0123456789.px";
@@ -54,7 +54,7 @@ class Canvas {
         if (x >= 0 && y >= 0 && x < width_ && y < height_) codes_[static_cast<std::size_t>(y * width_ + x)] = c;
     }
     static int text_width(std::string_view text) { return kAdvance * static_cast<int>(text.size()) - 1; }
-    /// Letters of kLetters and blanks; (x, y): upper left corner.
+    /// Draws letters of kLetters and blanks. (x, y): upper left corner.
     void write(int x, int y, std::string_view text) {
         for (const char letter : text) {
             const std::size_t found = kLetters.find(letter);

@@ -9,7 +9,7 @@
 namespace eikonal::reference {
 namespace {
 
-/// A line "KEY:  N kB" of the process's status, in bytes; 0 if it is not there.
+/// The number in a line "KEY:  N kB" of the process's status, in bytes. 0 if there is no such line.
 double status_bytes(const std::string& key) {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -21,7 +21,7 @@ double status_bytes(const std::string& key) {
 
 MemoryWatch::MemoryWatch() {
     malloc_trim(0);
-    std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts again at what is resident now
+    std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak to the present size
     start_ = status_bytes("VmRSS");
 }
 

@@ -1,15 +1,15 @@
-/// Memory that a piece of work takes, as the system counts it.
+/// The memory that a piece of work takes, as the system counts it.
 #pragma once
 
 namespace eikonal::reference {
 
-/// Watches the resident memory of the process. Free memory is given back to the system first, so that what follows has
-/// to ask for its own; what other threads do meanwhile counts too. One at a time.
+/// Watches the resident memory of the process. The constructor returns free memory to the system, so the work has to
+/// ask for its own. Work of other threads counts too. Only one watch may exist at a time.
 class MemoryWatch {
   public:
     MemoryWatch();
-    /// Bytes by which resident memory has exceeded its size at the start at the most; 0 where the system does not tell
-    /// (it must have /proc, as Linux has).
+    /// The most bytes by which resident memory has exceeded its size at the start. 0 if the system does not tell: it
+    /// needs /proc, as on Linux.
     double most_grown() const;
 
   private:

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "noise/base/error.h"
+#include "noise/medium/medium_spec.h"
+#include "noise/surface/surface_spec.h"
 
 namespace eikonal::reference {
 namespace {
@@ -35,7 +37,7 @@ class Slices {
         const double middle = number < 0 ? 0 : (number + 0.5) * thickness_;
         return field_.speed(origin_ + middle * normal_);
     }
-    /// Along p, from x in slice `number` to where the next begins [m].
+    /// The way along p from x in slice `number` to the next slice [m].
     double way(const dvec3& x, const dvec3& p, double number) const {
         const double rise = glm::dot(p, normal_);
         if (rise == 0 || (rise > 0 && number == count_) || (rise < 0 && number < 0)) return kInfinity;
@@ -49,8 +51,8 @@ class Slices {
     double thickness_, count_;
 };
 
-/// `result` has come to the start or end of the last of the steps that the meeting is on. The speeds of neighbouring
-/// slices hardly differ: its length is right to their difference times that of a chord.
+/// Ends `result` at a meeting on one of its last steps. The speeds of neighbouring slices hardly differ. The length is
+/// exact to their difference times the length of a chord.
 BentHit end_at(BentHit result, const SurfaceSearch::Met& met) {
     const RayState at = met.step.at(met.theta);
     result.length += (at.u - result.at.u) * glm::length(at.p);
@@ -65,7 +67,7 @@ std::optional<SurfaceSpec> baseline_surface(Integrator integrator, const std::ve
     if (integrator != Integrator::Layers && integrator != Integrator::Mirror) return {};
     const char* name = integrator == Integrator::Layers ? "layers" : "mirror";
     for (std::size_t i = 0; i < media.size(); ++i)
-        if (!std::holds_alternative<SurfaceSpec>(media[i]) || media.size() > 1)
+        if (!(media[i].get_if<SurfaceSpec>() != nullptr) || media.size() > 1)
             throw UserError(fmt::format(
                 "--integrator {}: follows rays through a single medium of type \"surface\", but "
                 "the scene has {}; remove it or use adaptive",
@@ -75,7 +77,7 @@ std::optional<SurfaceSpec> baseline_surface(Integrator integrator, const std::ve
             fmt::format("--integrator {}: needs a medium of type \"surface\", but the scene has no [[medium]]; "
                         "add one or use adaptive",
                         name));
-    return std::get<SurfaceSpec>(media.front());
+    return (*media.front().get_if<SurfaceSpec>());
 }
 
 BentHit trace_layers(const AirInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
@@ -102,7 +104,7 @@ BentHit trace_layers(const AirInstant& field, const Geometry* geometry, const dv
         ray = step.to();
         result.length += std::min(way, remaining);
         if (way >= remaining) break;
-        // Snell: |p_t| stays.
+        // Snell's law: |p_t| does not change.
         const double rise = glm::dot(ray.p, slices.normal()), next = number + (rise > 0 ? 1 : -1);
         const double next_speed = slices.speed(next);
         const double square = rise * rise + (next_speed - speed) * (next_speed + speed);
@@ -131,7 +133,7 @@ BentHit trace_mirror(const AirInstant& field, const Geometry* geometry, const dv
         result.end = BentHit::End::NoIndex;
         return result;
     }
-    // Once from the mirror at most: it is flat.
+    // The mirror is flat, so it reflects a ray at most once.
     for (bool may_reflect = true;; may_reflect = false) {
         ++result.steps;
         const double speed = glm::length(ray.p), rise = glm::dot(ray.p, normal) / speed;
@@ -143,7 +145,7 @@ BentHit trace_mirror(const AirInstant& field, const Geometry* geometry, const dv
         const double mirror = tangential2 > surface_speed * surface_speed ? at_plane : kInfinity;
         const double slack = kFloatSlack * (settings.distance + result.length + std::min(mirror, settings.far));
         std::optional<Hit> hit;
-        // An object within rounding of the mirror is what bears it, whichever of the two comes first.
+        // An object within rounding of the mirror counts as lying under it, even if it comes first.
         if (geometry) hit = geometry->intersect(ray.x, d, 0, remaining);
         const bool reflects =
             mirror < remaining && (!hit || hit->t > mirror || glm::dot(hit->point - on_plane, normal) < slack);

@@ -1,21 +1,25 @@
-/// The mirages of Berger et al. 1990 and Musgrave 1990, as the paper names them: to compare with, not to trust. Both
-/// know one heated surface and nothing else (baseline_surface refuses the rest), and take the index from the field.
+/// The mirages of Berger et al. 1990 and of Musgrave 1990, as the paper names them. They are here for comparison and
+/// are not exact. Both know one heated surface and nothing else (baseline_surface refuses other scenes). They take the
+/// index from the field.
 ///
-/// layers: the air above the surface is cut into slices of constant index parallel to it, each having the index of its
-/// middle. Rays are straight within a slice; at each boundary Snell's law holds or they are totally reflected. So the
-/// tangential part of p never changes and the normal part follows from p_ν² + |p_t|² = n². Error of order 2 in the
-/// slices' thickness for rays that cross them; of order 1/2 for one that turns back, which it does at a boundary,
-/// anywhere in the slice where the bent ray would: that is the worst of many thicknesses, and single ones jump about
-/// below it, so halving the slice need not help (from 0.2 m over asphalt of 305 K and d0 = 1 cm, seen 60 m away: up to
-/// 16 mm off with slices of 16 µm).
+/// layers. The air above the surface is cut into slices of constant index, parallel to the surface. A slice has the
+/// index of its middle. Rays are straight within a slice. At each boundary Snell's law holds, or the ray is totally
+/// reflected. So the tangential part of p never changes, and the normal part follows from p_ν² + |p_t|² = n². The error
+/// is of order 2 in the slices' thickness for rays that cross them. It is of order 1/2 for a ray that turns back: the
+/// ray turns at a boundary, while the bent ray turns anywhere in the slice. This is the worst case of many thicknesses.
+/// Single thicknesses scatter below it, so halving the slice need not help. (From 0.2 m over asphalt of 305 K with d0 =
+/// 1 cm, seen 60 m away, slices of 16 µm are off by up to 16 mm.)
 ///
-/// mirror: straight rays, which the surface's plane reflects perfectly at angles below the critical one, where
-/// |p_t| exceeds the index at the surface. Order 0: its error goes with the dropoff. An object closer to that plane
-/// than Embree can tell lies under the mirror.
+/// mirror. Rays are straight. The surface's plane reflects them perfectly at angles below the critical one, where |p_t|
+/// exceeds the index at the surface. The error is of order 0: it grows with the dropoff. An object that is closer to
+/// the plane than Embree can tell lies under the mirror.
 ///
-/// Conventions, ends and errors as in bent_ray.h; error_px is 0: they have no estimate.
+/// Conventions, ends and errors are those of bent_ray.h. error_px is 0, since there is no estimate.
+/// Theory: PHYSICS.md#baselines.
 #pragma once
 
+#include "noise/medium/medium_spec.h"
+#include "noise/surface/surface_spec.h"
 #include "reference/trace/bent_ray.h"
 
 namespace eikonal::reference {

@@ -11,21 +11,21 @@
 namespace eikonal::reference {
 namespace {
 
-/// Places closer together than this, relative to 1 m and to their coordinates, are the same.
+/// Places count as the same if they are closer together than this, relative to 1 m plus their coordinates.
 constexpr double kSamePlace = 1e-12;
-/// F counts as constant up to an edge where that changes the direction by less [rad].
+/// F counts as constant up to an edge if this changes the direction by less [rad].
 constexpr double kEdgeTurn = 1e-12;
 
-/// A step may grow to this many times the last one, where the error is below this part of what is allowed.
+/// A step may grow to this many times the last one if its error is below this part of the allowed error.
 constexpr double kMostGrowth = 2, kMostGrowthError = 0.018;
-/// How far before an edge its direction is probed, in parts of the longest step.
+/// How far before an edge the edge's direction is probed [longest steps].
 constexpr double kProbe = 1e-3;
 
 bool finite(const dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// x^(1/5) of a positive normal x, at most 1 % too small: along the chord from one power of two to the next.
+/// x^(1/5) of a positive normal x, at most 1 % too small, along the chord from one power of two to the next.
 double fifth_root(double x) {
     constexpr std::array<double, 5> kRoots = {1, 1.148698354997035, 1.3195079107728942, 1.5157165665103982,
                                               1.7411011265922482};
@@ -66,7 +66,7 @@ class Tracer {
     void enter(double reach, const dvec3& before);
     void finish(const SurfaceSearch::Met& met);
 
-    /// What was known at the start of one of the last steps, in case a surface is met on it.
+    /// The state at the start of one of the last steps. It is restored if a surface is met on that step.
     struct Mark {
         double u, length, error;
         int steps;
@@ -76,7 +76,7 @@ class Tracer {
     const TraceSettings& settings_;
     double tolerance_;       ///< [rad or m]
     double longest_ = 0;     ///< way [m]
-    double quiet_turn_ = 0;  ///< that does not matter [rad]
+    double quiet_turn_ = 0;  ///< turn that does not matter [rad]
     bool adaptive_, bent_ = false;
     const LoneSurface* lone_ = nullptr;
     Bundle* bundle_;
@@ -85,17 +85,16 @@ class Tracer {
     SurfaceSearch search_;
     RayState state_;
     dvec3 force_{0};
-    double proposed_ = std::numeric_limits<double>::infinity();  ///< length of the next step by its error [m]
+    double proposed_ = std::numeric_limits<double>::infinity();  ///< length of the next step, by the last error [m]
     double launch_speed_ = 1;
-    double nudge_ = 0;  ///< of the last step, if that only went over an edge [m]
+    double nudge_ = 0;  ///< of the last step, if it only went over an edge, else 0 [m]
     double error_ = 0;  ///< [rad or m]
-    /// Turned since the place that the ray has got ahead from, and where on it that was.
+    /// The angle turned since the ray last made headway, and the path length and place of that moment.
     double turned_ = 0, turned_from_ = 0;
     dvec3 turned_at_{0};
-    /// Where its pace was last looked at.
     BentHit result_;
-    std::array<Mark, SurfaceSearch::kMostPieces> marks_;                     ///< as many as were accepted are there
-    std::optional<std::array<Bundle, SurfaceSearch::kMostPieces>> bundles_;  ///< beside them
+    std::array<Mark, SurfaceSearch::kMostPieces> marks_;                     ///< of the last accepted steps
+    std::optional<std::array<Bundle, SurfaceSearch::kMostPieces>> bundles_;  ///< beside the marks
     std::size_t accepted_ = 0;
 };
 
@@ -104,7 +103,7 @@ double Tracer::same_place() const {
     return kSamePlace * (1 + std::max(size.x, std::max(size.y, size.z)));
 }
 
-/// Final displacement that the local errors of a step may cause, as an angle or in metres.
+/// The final displacement that the local errors of a step may cause [rad or m].
 double Tracer::error(const Step& step, double speed) const {
     const double x = glm::length(step.error_x), p = glm::length(step.error_p) / speed;
     const double s = result_.length + step.h * speed;
@@ -114,7 +113,7 @@ double Tracer::error(const Step& step, double speed) const {
     return x + p * std::max(ahead, 0.0);
 }
 
-/// Way that is straight.
+/// Length of the way ahead that is straight [m].
 double Tracer::clear_way() const {
     if (lone_) {
         const double way = lone_->clear_way(state_.x, glm::normalize(state_.p), quiet_turn_, longest_);
@@ -123,7 +122,7 @@ double Tracer::clear_way() const {
     return may_be_clear(force_) ? field_.clear_way(state_.x, glm::normalize(state_.p)) : 0;
 }
 
-/// Whether the ray gets nowhere.
+/// Whether the ray is trapped.
 bool Tracer::trapped() {
     if (!settings_.end_trapped) return false;
     if (!(turned_ > kTrapTurn)) return false;
@@ -134,7 +133,7 @@ bool Tracer::trapped() {
     return false;
 }
 
-/// Takes a step into the ray. True if that ends it at a surface.
+/// Appends a step to the ray. True if a surface ends the ray.
 bool Tracer::accept(const Step& step) {
     const std::size_t slot = accepted_++ % marks_.size();
     marks_[slot] = {step.from.u, result_.length, error_, result_.steps};
@@ -174,21 +173,21 @@ void Tracer::finish(const SurfaceSearch::Met& met) {
     state_.x = met.hit.point;
 }
 
-/// How far beyond an edge `way` ahead to go on. Where rounding keeps the ray this side of one it only grazes, ever
-/// more.
+/// How far beyond an edge `way` ahead the ray goes on [m]. The distance doubles each time that rounding has left the
+/// ray on the near side of an edge that it grazes.
 double Tracer::nudge(double way) {
     nudge_ = way <= 2 * nudge_ ? 2 * nudge_ : same_place();
     return nudge_;
 }
 
-/// Behind an edge where F was `before`; no other lies within `reach` [m] before it.
+/// Called just beyond an edge. F was `before`. No other edge lies within `reach` [m] before it.
 void Tracer::enter(double reach, const dvec3& before) {
     force_ = field_.force(state_.x, state_.p);
     if (bundle_)
         pass_edge(field_, state_, std::min(reach, kProbe * field_.longest_step(state_.x)), before, force_, *bundle_);
 }
 
-/// Over a way without any medium, and into the next. True if a surface ends the ray.
+/// Crosses a way without any medium and enters the next medium. True if a surface ends the ray.
 bool Tracer::go_straight(double way) {
     const double speed = glm::length(state_.p);
     const double remaining = std::min(settings_.far - result_.length, (settings_.u_end - state_.u) * speed);
@@ -199,7 +198,7 @@ bool Tracer::go_straight(double way) {
     return false;
 }
 
-/// One step, as long as the field and its error allow; what ends the ray, if anything.
+/// Takes one step, as long as the field and the error allow. Returns what ends the ray, if anything.
 std::optional<BentHit::End> Tracer::go_bent() {
     bent_ = true;
     const double speed = glm::length(state_.p);
@@ -222,7 +221,7 @@ std::optional<BentHit::End> Tracer::go_bent() {
             enter(kProbe * feature, before);
             return {};
         }
-        // It bends towards the edge or away from it.
+        // The ray may bend towards the edge, so the step stays short of it.
         length = edge * (1 - std::min(0.5, bend));
     }
     nudge_ = 0;
@@ -233,7 +232,7 @@ std::optional<BentHit::End> Tracer::go_bent() {
         step = bent_step(settings_.integrator, field_, state_, force_, h);
         off = error(step, speed);
         if (!adaptive_) break;
-        // The error of order 4 goes with h^5.
+        // The error of order 4 grows with h^5.
         const double allowed = tolerance_ / (lone_ ? kStepShareOverSurface : kStepShare);
         double factor = kMostGrowth;
         if (!(off <= kMostGrowthError * allowed)) factor = std::isfinite(off) ? 0.9 * fifth_root(allowed / off) : 0;
@@ -249,7 +248,7 @@ std::optional<BentHit::End> Tracer::go_bent() {
     error_ += off;
     if (accept(step)) return End::Surface;
     force_ = step.force_to;
-    // A ray has |p| = n, so one that is followed well slows down before it comes to where there is no index.
+    // A ray has |p| = n. If the steps are exact, it slows down before it comes to a place with n <= 0.
     if ((!adaptive_ || glm::length(p) < 0.5 * launch_speed_) && !(field_.speed(state_.x) > 0)) return End::NoIndex;
     return {};
 }
@@ -295,7 +294,7 @@ BentHit Tracer::run(const dvec3& origin, const dvec3& direction) {
     return result_;
 }
 
-/// What trace() does, without what interpolation is off by.
+/// trace() without the error of interpolation.
 BentHit follow(const AirInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
                const TraceSettings& settings, Bundle* bundle, const StepRecorder& recorder) {
     switch (settings.integrator) {
@@ -312,7 +311,7 @@ BentHit follow(const AirInstant& field, const Geometry* geometry, const dvec3& o
     const std::optional<Bundle> launched = bundle ? std::optional(*bundle) : std::nullopt;
     BentHit result = Tracer(field, geometry, settings, bundle, recorder).run(origin, direction);
     if (settings.integrator != Integrator::Adaptive || !too_far_off(result, settings.tolerance_px)) return result;
-    // Errors of steps add up: with so much less of them, the ray anew.
+    // The errors of the steps have added up. Follow the ray again with a tolerance that is smaller by as much.
     TraceSettings finer = settings;
     for (int i = 0; i < kMostRetries && too_far_off(result, settings.tolerance_px); ++i) {
         finer.tolerance_px *= settings.tolerance_px / result.error_px;

@@ -12,7 +12,7 @@ double angle_turns(double y, double x) {
     const double large = ax > ay ? ax : ay;
     if (!(large > 0)) return 0;
     const double t = (ax > ay ? ay : ax) / large;
-    // A start within 5e-3 rad of atan t; the rest of the angle is atan((t c - s) / (c + t s)), a short series there.
+    // The start is within 5e-3 rad of atan t. The rest of the angle is atan((t c - s) / (c + t s)), a short series.
     const double guess = t * (portable::kPi / 4 + 0.273 * (1 - t));
     double s, c;
     portable::sincos(guess, s, c);

@@ -9,7 +9,7 @@
 namespace eikonal::reference {
 namespace {
 
-/// To 18 significant bits: the last six of the mantissa are zero, which packs well. Infinity stays.
+/// Rounds to 18 significant bits. The last six bits of the mantissa are then zero, which packs well. Infinity stays.
 float rounded_depth(float z) {
     return std::bit_cast<float>((std::bit_cast<std::uint32_t>(z) + 32u) & ~63u);
 }

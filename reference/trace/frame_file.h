@@ -1,6 +1,6 @@
-/// The EXR that a rendered frame becomes: channels as render.h names them.
+/// The EXR file of a rendered frame. Its channels have the names in render.h.
 ///
-/// Colour is half; Z, u, v and all the rest float32: measurements keep their digits.
+/// Colour is half. Z, u, v and all other channels are float32, so that measurements keep their digits.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,14 @@
 
 namespace eikonal::reference {
 
-/// Exact: ZIP. Compact, for small sample files: colour DWAA (slightly lossy), Z rounded to within kCompactDepthError.
+/// Exact: ZIP, nothing is lost. Compact: for small sample files; colour is DWAA, which loses a little, and Z is rounded
+/// to within kCompactDepthError.
 enum class Storage { Exact, Compact };
 
-/// Relative.
+/// Largest relative error of Z in a compact file.
 inline constexpr double kCompactDepthError = 0x1p-18;
 
-/// Writes every plane that the frame has. FrameError.
+/// Writes every plane that the frame has. FrameError if the file cannot be written.
 void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, Storage storage);
 
 }  // namespace eikonal::reference

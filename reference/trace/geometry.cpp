@@ -25,7 +25,7 @@ void check(RTCDevice device) {
     if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree could not build the scene");
 }
 
-/// Four at a time, as Embree reads them: it would wait for single ones.
+/// Stores four floats at a time, as Embree reads them. Embree would have to wait for single stores.
 void set(RTCRay& ray, const dvec3& origin, const dvec3& direction, double t_min, double t_max) {
     const auto four = [](double x, double y, double z, double w) {
         return _mm_movelh_ps(_mm_cvtpd_ps(_mm_set_pd(y, x)), _mm_cvtpd_ps(_mm_set_pd(w, z)));
@@ -37,20 +37,20 @@ void set(RTCRay& ray, const dvec3& origin, const dvec3& direction, double t_min,
     ray.id = ray.flags = 0;
 }
 
-/// What lies closer behind a surface, relative to its distance and to 1 m, counts as that surface.
+/// A surface closer behind another than this, relative to its distance plus 1 m, counts as the same one.
 constexpr double kSameSurface = 1e-5;
 
 bool finite(dvec3 v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Both normals to the side the segment comes from.
+/// Turns both normals to the side of the segment's origin.
 void face(dvec3 direction, Hit& hit) {
     if (glm::dot(hit.normal, direction) > 0) hit.normal = -hit.normal;
     if (glm::dot(hit.shading_normal, hit.normal) < 0) hit.shading_normal = -hit.shading_normal;
 }
 
-/// To the plane of a triangle that Embree has met at about `near`.
+/// Distance to the plane of a triangle that Embree has met at about `near`.
 double triangle_distance(const Mesh& mesh, unsigned triangle, const dvec3& origin, const dvec3& direction,
                          double near) {
     const std::array<std::uint32_t, 3>& vertex = mesh.triangles[triangle].vertex;
@@ -60,15 +60,15 @@ double triangle_distance(const Mesh& mesh, unsigned triangle, const dvec3& origi
     return std::isfinite(exact) ? exact : near;
 }
 
-/// To a sphere that Embree has met at about `near`.
+/// Distance to a sphere that Embree has met at about `near`.
 double sphere_distance(const dvec3& center, double radius, const dvec3& origin, const dvec3& direction, double near) {
-    // |origin - c + t d|² = r². The perpendicular part first, so that a distant sphere loses no digits.
+    // Solves |origin - c + t d|² = r². The perpendicular part comes first, so that a distant sphere loses no digits.
     const double d2 = glm::dot(direction, direction);
     const double middle = glm::dot(center - origin, direction) / d2;
     const dvec3 perpendicular = origin + middle * direction - center;
     const double h2 = radius * radius - glm::dot(perpendicular, perpendicular);
     const double half = std::sqrt(std::max(h2, 0.0) / d2);
-    // The root that Embree chose: the near one from outside, the far one from within.
+    // Embree has chosen the near root from outside and the far one from within.
     return near < middle ? middle - half : middle + half;
 }
 
@@ -257,7 +257,7 @@ std::optional<int> Geometry::object_around(dvec3 point) const {
     for (const Sphere& sphere : spheres_)
         if (glm::distance(point, sphere.center) < sphere.radius) return sphere.object;
     if (meshes_.empty() || !finite(point)) return {};
-    // From within a closed mesh every way out passes its surface an odd number of times.
+    // Every way out of a closed mesh passes its surface an odd number of times.
     constexpr int kWays = 7, kMostSurfaces = 10000;
     std::vector<int> odd(meshes_.size(), 0);
     for (int way = 0; way < kWays; ++way) {
@@ -275,7 +275,7 @@ std::optional<int> Geometry::object_around(dvec3 point) const {
         }
         for (std::size_t i = 0; i < passed.size(); ++i) odd[i] += passed[i] % 2;
     }
-    // One way may have gone through an edge.
+    // One of the ways may have gone through an edge.
     for (std::size_t i = 0; i < odd.size(); ++i)
         if (odd[i] >= kWays - 1) return meshes_[i].object;
     return {};

@@ -1,16 +1,16 @@
-/// The objects of a scene as one thing that segments can be shot at, by Embree (3 or 4).
+/// The objects of a scene as one thing that segments can be tested against, by Embree (3 or 4).
 ///
-/// Positions and directions are double and in world metres. Embree works in float: it is given everything relative to
-/// an anchor (the camera of the first frame), where a float is within 6e-8 of the distance, an angle of 6e-8 rad seen
-/// from the anchor, and it only chooses the triangle or sphere; where the segment meets it is then solved in double.
-/// Infinite planes never enter Embree. Objects are two-sided.
+/// Positions and directions are double, in world metres. Embree works in float. It gets everything relative to an
+/// anchor, which is the camera of the first frame. A float is there within 6e-8 of the distance, which is an angle of
+/// 6e-8 rad as seen from the anchor. Embree only chooses the triangle or sphere. The place where the segment meets it
+/// is then solved in double. Infinite planes do not go to Embree. Objects are two-sided.
 ///
-/// Accuracy: the distance of a hit is within kHitAccuracy (relative) of the closed form for the planes, quads and
-/// spheres, except for segments nearly tangent to them. Which of two triangles a segment through their common edge
-/// meets may depend on the processor, as Embree's own arithmetic does; the point it meets does not.
+/// Accuracy: the distance of a hit is within kHitAccuracy (relative) of the closed form for planes, quads and spheres,
+/// except for segments that are nearly tangent. A segment through the common edge of two triangles may meet either, and
+/// the choice may depend on the processor, as Embree's own arithmetic does. The point does not depend on it.
 ///
-/// Failures: UserError for an empty scene and, naming their key, for meshes that cannot be read. Intersecting never
-/// fails: a segment that is not finite meets nothing.
+/// Failures: UserError for an empty scene and, with the key, for meshes that cannot be read. Intersection never fails:
+/// a segment that is not finite meets nothing.
 #pragma once
 
 #include <memory>
@@ -26,34 +26,34 @@ namespace eikonal::reference {
 
 inline constexpr double kHitAccuracy = 1e-10;
 
-/// How a surface looks, before any light. Colours are linear.
+/// The look of a surface without light. Colours are linear.
 struct Material {
     dvec3 color{0.5, 0.5, 0.5};
     dvec3 emission{0, 0, 0};
     std::optional<std::filesystem::path> texture;  ///< multiplies `color`
-    bool unlit = false;                            ///< shows its colour whatever the light
-    double mirror = 0;                             ///< part of the light that is reflected, 0 … 1
-    std::optional<double> refractive_index;        ///< of glass
-    int object = 0;                                ///< whose it is: index in Scene::objects
+    bool unlit = false;                            ///< shows its colour in any light
+    double mirror = 0;                             ///< part of the light that it reflects, 0 … 1
+    std::optional<double> refractive_index;        ///< set for glass
+    int object = 0;                                ///< index in Scene::objects
 };
 
 /// Where a segment origin + t direction first meets a surface.
 struct Hit {
     double t = 0;
     dvec3 point{0, 0, 0};
-    dvec3 normal{0, 1, 0};          ///< unit, geometric, on the side the segment comes from
-    dvec3 shading_normal{0, 1, 0};  ///< unit, interpolated from the mesh's normals; on the same side
-    dvec3 color{1, 1, 1};           ///< of the vertices, multiplies the material's
+    dvec3 normal{0, 1, 0};          ///< unit, geometric, on the side of the segment's origin
+    dvec3 shading_normal{0, 1, 0};  ///< unit, interpolated from the mesh's normals, on the same side
+    dvec3 color{1, 1, 1};           ///< of the vertices. It multiplies the material's colour.
     dvec2 uv{0, 0};                 ///< texture coordinates, v up
     int object = 0;                 ///< index in Scene::objects
     int material = 0;               ///< index in materials()
 };
 
-/// The surface that a segment meets first, before it is known what it looks like there.
+/// The surface that a segment meets first, without its look.
 struct Contact {
     double t = 0;
-    int plane = -1;                        ///< of Geometry's planes; -1: one of Embree's
-    unsigned geometry = 0, primitive = 0;  ///< Embree's
+    int plane = -1;                        ///< index of Geometry's planes. -1: Embree's geometry
+    unsigned geometry = 0, primitive = 0;  ///< Embree's indices
 };
 
 class Geometry {
@@ -64,26 +64,26 @@ class Geometry {
     Geometry(const Geometry&) = delete;
     Geometry& operator=(const Geometry&) = delete;
 
-    /// The first surface met at t_min < t < t_max; `direction` need not be of unit length.
+    /// The first surface at t_min < t < t_max. `direction` may have any length.
     std::optional<Hit> intersect(dvec3 origin, dvec3 direction, double t_min, double t_max) const;
 
-    /// The same in two parts, for whoever may need no more than the distance.
+    /// The same in two parts, for callers that may need the distance only.
     std::optional<Contact> nearest(dvec3 origin, dvec3 direction, double t_min, double t_max) const;
     void look(const Contact& contact, dvec3 origin, dvec3 direction, Hit& hit) const;
 
     /// Whether anything lies at t_min < t < t_max.
     bool occluded(dvec3 origin, dvec3 direction, double t_min, double t_max) const;
 
-    /// A point just off the surface at `hit`, on the side of its normal, from which a new ray may start: as far as
-    /// Embree's float positions may err there.
+    /// A point just off the surface at `hit`, on the side of its normal, from which a new ray may start. It is as far
+    /// off as Embree's float positions may err there.
     dvec3 leave(const Hit& hit) const;
 
-    /// A lower bound of the way from a point to any surface [m]; infinity if there is none.
+    /// A lower bound of the way from a point to any surface [m]. Infinity if there is no surface.
     double clearance(const dvec3& point) const;
 
-    /// Object index of a sphere or closed mesh that a point lies within: of a mesh whose closed parts are passed an odd
-    /// number of times on all ways out but one of seven. Surfaces within a hundred-thousandth of their distance count
-    /// as one.
+    /// Index of a sphere or closed mesh that a point lies within. A point lies within a mesh if at least six of seven
+    /// ways out pass the mesh's closed parts an odd number of times. Surfaces within a hundred-thousandth of their
+    /// distance count as one.
     std::optional<int> object_around(dvec3 point) const;
 
     const std::vector<Material>& materials() const { return materials_; }
@@ -91,7 +91,7 @@ class Geometry {
   private:
     struct Plane {
         dvec3 origin, normal, right, up;  ///< unit, orthogonal
-        std::array<double, 2> size;       ///< of one repeat of the texture [m]
+        std::array<double, 2> size;       ///< size of one repeat of the texture [m]
         int object, material;
     };
     struct Sphere {
@@ -102,8 +102,8 @@ class Geometry {
     struct MeshEntry {
         Mesh mesh;
         int object;
-        int material;        ///< of triangles without their own
-        int first_material;  ///< of the mesh's own list
+        int material;        ///< of triangles without a material of their own
+        int first_material;  ///< place of the mesh's own list in materials_
     };
 
     int add_material(const ObjectSpec& object, int index);
@@ -120,7 +120,7 @@ class Geometry {
     std::vector<Material> materials_;
     std::vector<Plane> planes_;
     std::vector<Sphere> spheres_;
-    std::vector<MeshEntry> meshes_;  ///< Embree geometry i is meshes_[i]; the next one, if any, holds the spheres
+    std::vector<MeshEntry> meshes_;  ///< Embree's geometry i is meshes_[i]. The next one, if any, holds the spheres.
     std::unique_ptr<RTCDeviceTy, void (*)(RTCDeviceTy*)> device_;
     std::unique_ptr<RTCSceneTy, void (*)(RTCSceneTy*)> scene_;
 };

@@ -5,15 +5,17 @@
 
 #include "noise/math/portable_math.h"
 #include "noise/math/ray_bounds.h"
+#include "noise/medium/optics.h"
+#include "noise/surface/surface_spec.h"
 
 namespace eikonal::reference {
 namespace {
 
-/// Of the dropoff: the least change of height for the closed form. Its cancellation goes with the inverse square.
+/// The least change of height for the closed form [dropoffs]. Its cancellation grows with the inverse square of it.
 constexpr double kLeastChange = 0.02;
-/// A straight ray that ends on the surface may be below it by rounding: in dropoffs.
+/// A ray that ends on the surface may be below it by rounding, by at most this [dropoffs].
 constexpr double kBelow = 1e-6;
-/// What is lower than this counts as on it: in dropoffs.
+/// Lower heights than this count as on the surface [dropoffs].
 constexpr double kOnSurface = 1e-12;
 
 }  // namespace
@@ -29,8 +31,8 @@ LoneSurface::LoneSurface(const SurfaceSpec& spec, const OpticsSpec& optics)
     largest_force_ = std::abs(force_strength(optics)) * layer_.largest_slope() * n;
 }
 
-/// Height above which |F| is below `force` [1/m]; at most that of the layer. Above the knee |n'| falls as e^{-h/d0} at
-/// least; the logarithm is rounded up to the next of a power of two.
+/// Height above which |F| is below `force` [1/m], at most the top of the layer. Above the knee |n'| falls at least as
+/// e^{-h/d0}. The logarithm is rounded up to that of the next power of two.
 double LoneSurface::quiet_height(double force) const {
     constexpr double kLn2 = 0.6931471805599453;
     const double ratio = largest_force_ / force;
@@ -39,8 +41,8 @@ double LoneSurface::quiet_height(double force) const {
     return std::min(layer_.top(), layer_.knee() + layer_.dropoff() * kLn2 * (std::ilogb(ratio) + 1));
 }
 
-/// A force F all the way L displaces by at most F L/2 as an angle. A ray that climbs c a metre is turned by all that is
-/// above it by at most F d0/c.
+/// A force F all along the way L displaces by an angle of at most F L/2. All the air above a ray that climbs by c a
+/// metre turns it by at most F d0/c.
 double LoneSurface::clear_way(const dvec3& x, const dvec3& d, double turn, double longest) const {
     const double climb = layer_.climb(d);
     const double top = quiet_height(turn * std::max(2 / longest, std::abs(climb) / layer_.dropoff()));
@@ -53,7 +55,7 @@ bool LoneSurface::is_quiet(double height, const dvec3& d, double distance, doubl
     return lowest > kBelow * layer_.dropoff() && lowest > quiet_height(force);
 }
 
-/// Of a height below the surface: that of the surface.
+/// A height below the surface gives the values of the surface.
 LoneSurface::AtHeight LoneSurface::at(double h) const {
     const double A = exaggeration_ * law_.refractivity * law_.T0, Ta = law_.ambient_temperature;
     const double excess = layer_.above_ambient(h), q = exaggeration_ * excess;

@@ -19,15 +19,15 @@
 namespace eikonal::reference {
 namespace {
 
-/// What lines of numbers begin with, and how many there are at least.
+/// The first word of a line of numbers, and the least count of its numbers.
 constexpr std::pair<std::string_view, int> kNumbers[] = {{"v", 3}, {"vn", 3}, {"vt", 1}, {"Kd", 3}, {"Ke", 3}};
 
-/// The indices of faces into v, vt and vn.
+/// Checks the indices of faces into v, vt and vn.
 class FaceCheck {
   public:
     explicit FaceCheck(const std::filesystem::path& file) : file_(file) {}
 
-    /// Of one line: what it begins with, and of a face the rest.
+    /// Takes one line. kind: its first word. words: the rest of the line, which is read for a face.
     void take(std::string_view kind, std::istream& words, long line) {
         for (List& list : lists_) list.count += kind == list.name;
         if (kind != "f") return;
@@ -35,7 +35,7 @@ class FaceCheck {
             std::size_t from = 0;
             for (std::size_t k = 0; k < lists_.size() && from <= corner.size(); ++k) {
                 const std::size_t slash = std::min(corner.find('/', from), corner.size());
-                // the second of three may be left out
+                // The second of three indices may be left out.
                 if (const std::string text = corner.substr(from, slash - from);
                     k != 1 || !text.empty() || slash == corner.size())
                     note(lists_[k], text, corner, line);
@@ -45,7 +45,7 @@ class FaceCheck {
         }
     }
 
-    /// After the last line: a face may name what comes after it.
+    /// Checks all faces. To be called after the last line, since a face may use what comes after it.
     void finish() const {
         for (const List& list : lists_)
             if (list.largest > list.count) refuse_entry(list, list.largest, list.line);
@@ -54,7 +54,7 @@ class FaceCheck {
   private:
     struct List {
         const char* name;
-        long count = 0, largest = 0, line = 0;  ///< largest index, and where
+        long count = 0, largest = 0, line = 0;  ///< largest: the largest index, on line `line`
     };
 
     void note(List& list, const std::string& text, const std::string& corner, long line) {
@@ -82,7 +82,7 @@ class FaceCheck {
     std::array<List, 3> lists_{{{"v"}, {"vt"}, {"vn"}}};
 };
 
-/// A line that names a material library whose name has spaces, with these escaped; any other as it is.
+/// Escapes the spaces in the name of a material library. Any other line is returned as it is.
 std::string with_whole_name(const std::string& line, const std::filesystem::path& folder) {
     constexpr std::string_view kLibrary = "mtllib ";
     if (!line.starts_with(kLibrary)) return line;
@@ -94,8 +94,8 @@ std::string with_whole_name(const std::string& line, const std::filesystem::path
     return result;
 }
 
-/// The text of a file in `folder` without a byte order mark, with lines that end in a backslash joined to the next (not
-/// comments), as many lines as before.
+/// The text of a file in `folder`, without a byte order mark. A line that ends in a backslash is joined to the next,
+/// except for comments. The number of lines stays the same.
 std::stringstream joined(std::istream& stream, const std::filesystem::path& folder) {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     std::stringstream result;
@@ -104,7 +104,7 @@ std::stringstream joined(std::istream& stream, const std::filesystem::path& fold
         if (first && text.starts_with(kMark)) text.erase(0, kMark.size());
         if (text.ends_with('\r')) text.pop_back();
         text = with_whole_name(text, folder);
-        // tinyobjloader takes no comment behind a face
+        // tinyobjloader does not accept a comment behind a face.
         if (text.starts_with("f ") && text.find('#') != text.npos) text.erase(text.find('#'));
         if (text.ends_with('\\') && text.find('#') == text.npos) {
             text.back() = ' ';
@@ -118,8 +118,8 @@ std::stringstream joined(std::istream& stream, const std::filesystem::path& fold
     return result;
 }
 
-/// UserError if a line that should hold numbers or indices does not: tinyobjloader would take what it cannot read for
-/// 0. Leaves the stream at its start.
+/// UserError if a line of numbers or indices holds anything else. tinyobjloader would read it as 0. Leaves the stream
+/// at its start.
 void check_numbers(std::istream& stream, const std::filesystem::path& file) {
     FaceCheck faces(file);
     std::string text;
@@ -149,7 +149,7 @@ void check_numbers(std::istream& stream, const std::filesystem::path& file) {
     stream.seekg(0);
 }
 
-/// Reads material libraries and remembers what it could not open, where tinyobjloader would only warn.
+/// Reads material libraries and remembers those that it could not open. tinyobjloader would only warn of them.
 class MaterialReader : public tinyobj::MaterialReader {
   public:
     explicit MaterialReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -189,7 +189,7 @@ bool has_area(const Mesh& mesh, const Mesh::Triangle& t) {
     return glm::dot(n, n) > 0;
 }
 
-/// Finds Triangle::closed of all.
+/// Sets Triangle::closed of all triangles.
 void mark_closed(Mesh& mesh) {
     using Index = std::uint32_t;
     const auto place = [&](Index i) {

@@ -1,12 +1,12 @@
 /// Triangle meshes from Wavefront OBJ files with their MTL materials.
 ///
-/// What is read: v (with optional r g b, a vertex colour that multiplies the material's), vt, vn, f (polygons are
-/// triangulated), mtllib, usemtl; of a material Kd, Ke and map_Kd. Everything else is ignored. Colours are linear.
-/// Coordinates are metres after `scale` and `offset`. Triangles without area are left out.
+/// The reader takes v (with optional r g b, a vertex colour that multiplies the material's), vt, vn, f (polygons are
+/// triangulated), mtllib and usemtl, and Kd, Ke and map_Kd of a material. It ignores everything else. Colours are
+/// linear. Coordinates are metres after `scale` and `offset`. Triangles without area are left out.
 ///
-/// Failures: UserError naming the file, for a mesh or material library that is missing, unreadable or has no triangles;
-/// naming file and line, for a v, vt, vn, Kd or Ke that is no list of finite numbers, and for an f whose indices are no
-/// whole numbers or outside their lists.
+/// Failures: UserError with the file's name, for a mesh or material library that is missing, unreadable or without
+/// triangles. UserError with file and line, for a v, vt, vn, Kd or Ke that is not a list of finite numbers, and for an
+/// f whose indices are not whole numbers or lie outside their lists.
 #pragma once
 
 #include <array>
@@ -29,15 +29,15 @@ struct MeshMaterial {
     std::optional<std::filesystem::path> texture;  ///< map_Kd, resolved against the folder of its file
 };
 
-/// Indexed triangles. The three lists of `normals` and `uvs` may be empty.
+/// Indexed triangles. `normals`, `uvs` and `materials` may be empty.
 struct Mesh {
     struct Triangle {
         std::array<std::uint32_t, 3> vertex;  ///< into positions and colors
         std::array<std::int32_t, 3> normal;   ///< into normals; -1: none at this corner
         std::array<std::int32_t, 3> uv;       ///< into uvs; -1: none
-        std::int32_t material = -1;           ///< into materials; -1: that of the object
-        /// Of a part that encloses space: where corners at the same place count as one, each of its edges belongs to
-        /// two triangles.
+        std::int32_t material = -1;           ///< into materials; -1: the object's material
+        /// Whether it belongs to a part that encloses space: each edge of the part belongs to two triangles, if corners
+        /// at the same place count as one.
         bool closed = false;
     };
     std::vector<dvec3> positions;  ///< [m], world
@@ -48,10 +48,11 @@ struct Mesh {
     std::vector<MeshMaterial> materials;
 };
 
-/// Reads `file`; a position p of the file becomes offset + scale p.
+/// Reads `file`. A position p of the file becomes offset + scale p.
 Mesh read_mesh(const std::filesystem::path& file, double scale, dvec3 offset);
 
-/// A rectangle as two triangles: corner c0 has uv (0, 0), c0 + u (1, 0), c0 + u + v (1, 1); its normal is u x v.
+/// A rectangle as two triangles. Corner c0 has uv (0, 0), c0 + u has (1, 0), and c0 + u + v has (1, 1). The normal is
+/// u x v.
 Mesh make_quad(dvec3 c0, dvec3 u, dvec3 v);
 
 }  // namespace eikonal::reference

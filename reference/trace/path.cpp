@@ -13,11 +13,11 @@
 namespace eikonal::reference {
 namespace {
 
-/// Of u, relative: where a ray ends within this of its length it has reached it.
+/// A ray that ends within this part of its length of u_end has reached it.
 constexpr double kSameEnd = 1e-11;
 
-/// The perturbed curve in steps so short that halving them moves its end by less than the tolerance, or than numbers
-/// tell apart. One that its budget ends is left as it is.
+/// The perturbed curve in steps so short that halving them moves its end by less than the tolerance, or by less than
+/// rounding. A curve whose budget is used up is returned as it is.
 BentHit converged_curve(const AirInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
                         TraceSettings settings, std::vector<Step>& steps) {
     const auto curve = [&] {
@@ -58,10 +58,10 @@ BentHit write_path(const AirInstant& field, const Geometry* geometry, const dvec
         settings.integrator == Integrator::FirstOrder || settings.integrator == Integrator::SecondOrder;
     BentHit result = perturbed ? converged_curve(field, geometry, origin, direction, settings, steps)
                                : trace(field, geometry, origin, direction, settings, nullptr, record);
-    // Steps add up to the length that is asked for but for rounding.
+    // Up to rounding, the steps add up to the length that is asked for.
     if (result.end == BentHit::End::Escaped && std::abs(result.at.u - settings.u_end) <= kSameEnd * (1 + result.at.u))
         result.at.u = settings.u_end;
-    // The last one ends early if it meets a surface; steps beyond it do not count.
+    // The last step ends early if it meets a surface. Steps beyond it do not count.
     while (!steps.empty() && steps.back().from.u >= result.at.u) steps.pop_back();
     stream << "u,x,y,z,px,py,pz\n";
     write_row(stream, steps.empty() ? result.at : steps.front().from);

@@ -9,20 +9,20 @@
 namespace eikonal::reference {
 namespace {
 
-/// A step evaluates F at its ends and its middle: this many of a field's longest steps leave no wider gap between.
-/// Where that errs by more than 1/kStepShare of the tolerance, half of it.
+/// Length of a step in a field's longest steps. A step samples F at its ends and its middle, so samples are no farther
+/// apart than one longest step. A step that errs by more than 1/kStepShare of the tolerance is halved.
 constexpr double kStretch = 2;
 
-/// For second order: the further force on a perturbed ray.
+/// The further force on a perturbed ray, for second order.
 dvec3 further(const ForceJet& jet, const dvec3& x1, const dvec3& dx1) {
     return jet.by_position * x1 + jet.by_direction * dx1;
 }
 
 struct Perturbed {
     dvec3 x1{0}, dx1{0}, x2{0}, dx2{0};
-    double error = 0;  ///< of x1⊥/D by the quadrature [rad]
+    double error = 0;  ///< error of x1⊥/D by the quadrature [rad]
     int steps = 0;
-    double way = 0;  ///< that the quadrature has come [m]
+    double way = 0;  ///< distance that the quadrature has covered [m]
     bool no_index = false, unfinished = false;
 };
 
@@ -37,7 +37,8 @@ class Quadrature {
           direction_(direction),
           speed_(speed) {}
 
-    /// Over 0 … distance [m], or until `walk`, which is given every step of the perturbed ray, returns true.
+    /// Integrates over 0 … distance [m]. Ends earlier if `walk`, which gets every step of the perturbed ray, returns
+    /// true.
     Perturbed over(double distance, const std::function<bool(const Step&)>& walk = {});
 
   private:
@@ -73,7 +74,8 @@ void Quadrature::straight(double length) {
     force_from_ = force_to_ = dvec3(0);
 }
 
-/// A part of what the trapezoidal rule is wrong by: enough at the longest steps, too much at shorter ones.
+/// Error estimate: a part of the trapezoidal rule's error. It fits the longest steps and is pessimistic for shorter
+/// ones.
 double Quadrature::off(const ForceJet& from, const ForceJet& middle, const ForceJet& to, double length) const {
     return glm::length(from.force - 2.0 * middle.force + to.force) * length / (90 * speed_ * speed_);
 }
@@ -87,7 +89,7 @@ void Quadrature::bent(const ForceJet& from, const ForceJet& middle, const ForceJ
     force_from_ = Fa;
     force_to_ = Fb;
     if (!second_) return;
-    // The middle, through the parabola that has these three forces.
+    // The state at the middle, by the parabola through these three forces.
     const dvec3 x1m = x1 + 0.5 * h * dx1 + h * h / 96 * (7.0 * Fa + 6.0 * Fm - Fb);
     const dvec3 dx1m = dx1 + h / 24 * (5.0 * Fa + 8.0 * Fm - Fb);
     const dvec3 Ga = further(from, x1, dx1), Gm = further(middle, x1m, dx1m), Gb = further(to, sum_.x1, sum_.dx1);
@@ -97,7 +99,8 @@ void Quadrature::bent(const ForceJet& from, const ForceJet& middle, const ForceJ
     force_to_ += Gb;
 }
 
-/// |p|² = |p0|² + 2 ∫ F·dx holds along the straight ray too: there is an index unless that comes near nothing.
+/// Whether the straight ray has come to n <= 0. |p|² = |p0|² + 2 ∫ F·dx holds along it too, so the field is asked only
+/// where |p|² comes near zero.
 bool Quadrature::without_index(double w) const {
     return speed_ + 2 * glm::dot(sum_.dx1, direction_) < 0.25 * speed_ && !(field_.speed(at(w)) > 0);
 }
@@ -108,7 +111,7 @@ Perturbed Quadrature::over(double distance, const std::function<bool(const Step&
         settings_.tolerance_px * settings_.pixel / kStepShare / (settings_.perspective ? 1 : distance);
     double w = 0;
     ForceJet here = sample(0);
-    // Takes a step, and on it goes: true if that was the last.
+    // Takes a step. True if it was the last.
     const auto take = [&](double length, bool straight_on, const auto& integrate) {
         const dvec3 shift_before = shift(), turn_before = turn(), p0 = speed_ * direction_;
         integrate();
@@ -141,13 +144,13 @@ Perturbed Quadrature::over(double distance, const std::function<bool(const Step&
             edge = field_.way_to_edge(at(w), direction_);
         }
         if (clear > 0 || edge <= place) {
-            // On, and beyond what ends there.
+            // Go on, just beyond the edge.
             const double way = std::min(std::max(edge, 0.0) + place, distance - w);
             if (take(way, true, [&] { straight(way); })) break;
             here = sample(w);
             continue;
         }
-        // An end that lies on the edge itself might be taken for its other side.
+        // A point exactly on the edge might count as its other side.
         if (edge <= length) length = edge - 0.5 * place;
         ForceJet there = sample(w + length), middle = sample(w + 0.5 * length);
         if (settings_.step == 0 && !(off(here, middle, there, length) <= allowed)) {
@@ -162,7 +165,7 @@ Perturbed Quadrature::over(double distance, const std::function<bool(const Step&
     return sum_;
 }
 
-/// First order without steps, where there is a form for it that is within the tolerance.
+/// First order in closed form, if there is one within the tolerance.
 std::optional<Perturbed> closed_form(const AirInstant& field, const TraceSettings& settings, const dvec3& origin,
                                      const dvec3& direction, double speed, double distance) {
     if (!std::isfinite(distance)) return {};
@@ -180,11 +183,11 @@ std::optional<Perturbed> closed_form(const AirInstant& field, const TraceSetting
         result.x1 = inverse_square * *pull;
         return result;
     }
-    const auto pull = field.pull(origin, direction, distance, quiet);
-    if (!pull) return {};
-    result.error = pull->error * glm::length(pull->value) * inverse_square / distance;
+    const auto bend = field.straight_bend(origin, direction, distance, quiet);
+    if (!bend) return {};
+    result.error = bend->error * glm::length(bend->value) * inverse_square / distance;
     if (!(result.error <= tolerance)) return {};
-    result.x1 = inverse_square * pull->value;
+    result.x1 = inverse_square * bend->value;
     return result;
 }
 
@@ -217,7 +220,7 @@ BentHit trace_perturbed(const AirInstant& field, const Geometry* geometry, const
     if (settings.integrator == Integrator::SecondOrder)
         shift += across(sum.x2) - glm::dot(sum.x1, direction) / speed * across(sum.dx1);
     RayState& ray = result.at;
-    // Where it is bent by nothing that matters the straight ray has found what there is.
+    // If no bend matters, the straight ray has already found what is seen.
     const double room = settings.step > 0 ? 0 : settings.tolerance_px * settings.pixel / kQuietShare;
     const double limit = room * (settings.perspective ? distance : 1);
     const auto arrive = [&](const std::optional<Contact>& contact, const dvec3& from, const dvec3& along) {
@@ -254,7 +257,7 @@ BentHit perturbed_curve(const AirInstant& field, const Geometry* geometry, const
         return result;
     }
     SurfaceSearch search(geometry, chord_deviation(settings), settings.distance);
-    std::vector<double> lengths;  // of path before each step
+    std::vector<double> lengths;  // length of path before each step
     std::vector<double> starts;   // u of each step
     std::optional<SurfaceSearch::Met> met;
     const auto walk = [&](const Step& step) {

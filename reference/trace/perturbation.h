@@ -1,31 +1,34 @@
 /// First and second order: the bent ray as a perturbation of the straight one (paper, Sections 4 and 5;
 /// PHYSICS.md#first-order).
 ///
-/// Along the straight ray x0(u) = q0 + u p0, |p0| the index at the origin, to parameter U at distance D, where it meets
-/// the geometry (without it, or where it meets nothing: at settings.far),
+/// The straight ray is x0(u) = q0 + u p0, with |p0| the index at the origin. At parameter U, distance D, it meets the
+/// geometry. If there is no geometry or nothing is met, D is settings.far. Along it,
 ///
-///     x1(U) = ∫₀^U (U - w) F(x0(w)) dw                                                            Eq. 7, *paper*
-///     x2(U) = ∫₀^U (U - w) [(x1·∇)F + (x1'·∂/∂p)F] dw                                              *added* the last
-///     term
+///     x1(U) = ∫₀^U (U - w) F(x0(w)) dw                                    Eq. 7, *paper*
+///     x2(U) = ∫₀^U (U - w) [(x1·∇)F + (x1'·∂/∂p)F] dw                     *added* the last term
 ///
-/// where ' is d/du. The perturbed ray itself is x0 + x1 (+ x2), with dx/du = p0 + x1' (+ x2'): perturbed_curve. A
-/// picture takes less of it. The ray is redirected, as the paper renders: a straight one from the same origin towards D
-/// d + x1⊥(U), or, for an orthographic camera, a parallel one shifted by x1⊥(U). Second order takes x1⊥ + x2⊥ - x1'⊥
-/// x1∥/|p0|, which is where the bent ray passes the plane through the straight one's end, across it. Error in the
-/// strength of the field: quadratic, and cubic where what is met faces the ray: the redirected ray arrives along its
-/// own straight line, so a surface that it meets obliquely is missed by the quadratic part in either order. Neither
-/// knows rays that turn back: over a hot road they hold well above the critical angle √(2B) and are worth nothing below
-/// it (from 0.2 m over asphalt of 305 K: 0.2 m off where the ray meets it at 1.2 times that angle, 9 mm at twice, 2 µm
-/// at ten times). A ray that is not bent by what matters (kQuietShare) is not shot again.
+/// where ' is d/du. The perturbed ray itself is x0 + x1 (+ x2), with dx/du = p0 + x1' (+ x2') (perturbed_curve).
 ///
-/// First order over nothing but a surface (lone_surface.h) and through nothing but blobs and thin screens
-/// (AirInstant::pull) is closed form, unless what that leaves out is above the tolerance. Else the integrals are
-/// Simpson's, of order 4 in the step; a step evaluates F no further apart than AirInstant::longest_step, and twice as
-/// often where its error is above 1/kStepShare of the tolerance. A given settings.step is taken as it is. error_px is
-/// the integrals' alone. Nothing is known of what lies beside the straight ray.
+/// A picture takes less of it. The ray is redirected as in the paper: it becomes the straight ray from the same origin
+/// towards D d + x1⊥(U), or for an orthographic camera the parallel ray shifted by x1⊥(U). Second order takes
+/// x1⊥ + x2⊥ - x1'⊥ x1∥/|p0|, which is where the bent ray passes the plane through the straight one's end, across it. A
+/// ray whose bend does not matter (kQuietShare) is not redirected.
 ///
-/// Ends, settings as in bent_ray.h; `at.p` is the redirected direction. A straight ray that comes to where n <= 0 ends
-/// there.
+/// Error. In the strength of the field it is quadratic for first order. It is cubic for second order where the surface
+/// faces the ray. The redirected ray arrives along its own straight line, so an oblique surface is missed by the
+/// quadratic part in either order. Neither order knows rays that turn back. Over a hot road they hold well above the
+/// critical angle √(2B), and they are useless below it. (From 0.2 m over asphalt of 305 K, the ray meets the road 0.2 m
+/// off at 1.2 times that angle, 9 mm off at twice, and 2 µm off at ten times.)
+///
+/// First order is in closed form over a lone surface (lone_surface.h) and through blobs and thin screens alone
+/// (AirInstant::pull), unless what the closed form leaves out exceeds the tolerance. All other integrals use Simpson's
+/// rule, of order 4 in the step. A step samples F no farther apart than AirInstant::longest_step, and twice as often
+/// where its error is above 1/kStepShare of the tolerance. A given settings.step is taken as it is. error_px is the
+/// error of the integrals only. Nothing beside the straight ray is known.
+///
+/// Ends and settings are those of bent_ray.h. `at.p` is the redirected direction. A straight ray that comes to n <= 0
+/// ends there.
+/// Theory: PHYSICS.md#second-order.
 #pragma once
 
 #include "reference/trace/bent_ray.h"
@@ -36,8 +39,8 @@ namespace eikonal::reference {
 BentHit trace_perturbed(const AirInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
                         const TraceSettings& settings, const StepRecorder& recorder);
 
-/// The curve x0 + x1 (+ x2) from the origin on, u = 0, to a surface that it meets itself, to settings.far or u_end;
-/// recorder gets its steps, settings otherwise as above. For a path as numbers.
+/// Follows the curve x0 + x1 (+ x2) itself, from the origin (u = 0) to a surface that the curve meets, to settings.far
+/// or to u_end. It serves paths as numbers. recorder: gets the steps. Settings are otherwise as above.
 BentHit perturbed_curve(const AirInstant& field, const Geometry* geometry, const dvec3& origin, const dvec3& direction,
                         const TraceSettings& settings, const StepRecorder& recorder);
 

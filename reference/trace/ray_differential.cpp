@@ -13,7 +13,7 @@ dvec3 bend(const ForceJet& jet, const Differential& d) {
     return jet.by_position * d.x + jet.by_direction * d.p;
 }
 
-/// Signed cross-section across `along`.
+/// The signed cross-section of a bundle across `along`.
 double cross_section(const dvec3& a, const dvec3& b, const dvec3& along) {
     return glm::dot(glm::cross(a, b), along) / glm::length(along);
 }
@@ -37,7 +37,7 @@ void advance(const AirInstant& field, const Step& step, double theta, Bundle& bu
         for (Differential& d : bundle) d.x += theta * step.h * d.p;
         return;
     }
-    // In two halves: a step of the ray may be that long.
+    // In two halves, since a step of the ray may be long.
     const double h = 0.5 * theta * step.h;
     ForceJet first = field.force_jet(step.from.x, step.from.p);
     for (const double part : {0.0, 0.5}) {
@@ -67,7 +67,7 @@ void pass_edge(const AirInstant& field, const RayState& state, double reach, con
     const dvec3 back = state.x - reach * d;
     const double way = field.way_to_edge(back, d);
     if (!(std::abs(way - reach) < 1e-3 * reach)) return;
-    // The way to a plane of normal ν is inverse to ν·d.
+    // The way to a plane of normal ν is proportional to 1/(ν·d).
     dvec3 right, up;
     perpendicular_axes(d, {}, right, up);
     constexpr double kTilt = 1e-3;

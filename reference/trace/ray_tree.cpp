@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// For a ray that goes on after so many metres of path.
+/// The settings of a ray that starts after `distance` metres of path.
 TraceSettings at_distance(TraceSettings trace, double distance) {
     trace.distance = distance;
     return trace;
@@ -27,20 +27,19 @@ std::optional<dvec3> RayTree::radiance(const dvec3& origin, const dvec3& directi
     return follow({origin, direction, 1, 0, 0, -1}, trace, sample);
 }
 
-/// The first surface on a branch's way; p and path length there. dark: the ray has come to no end.
+/// The first surface on a branch's way, with p and the path length there. dark: the ray has no end.
 std::optional<Hit> RayTree::meet(const Branch& branch, const TraceSettings& trace, dvec3& p, double& length,
                                  bool& dark) const {
     p = branch.p;
     dark = false;
-    check_cancelled(cancelled_);
+    check_stop(stop_);
     if (!field_ || branch.inside >= 0) {
         const auto hit = geometry_.intersect(branch.origin, p, 0, kInfinity);
         length = branch.distance + (hit ? hit->t * glm::length(p) : 0.0);
         return hit;
     }
     const auto follow_with = [&](const TraceSettings& settings) {
-        return reference::trace(*field_, &geometry_, branch.origin, glm::normalize(p), settings, nullptr,
-                                watch(cancelled_));
+        return reference::trace(*field_, &geometry_, branch.origin, glm::normalize(p), settings, nullptr, watch(stop_));
     };
     const BentHit end = branch.distance == 0 ? follow_with(trace) : follow_with(at_distance(trace, branch.distance));
     p = end.at.p;
@@ -50,7 +49,7 @@ std::optional<Hit> RayTree::meet(const Branch& branch, const TraceSettings& trac
     return end.surface;
 }
 
-/// Nothing if it has no end.
+/// The radiance of a branch. Nothing if its ray has no end.
 std::optional<dvec3> RayTree::follow(const Branch& branch, const TraceSettings& trace,
                                      const LightSample& sample) const {
     dvec3 p;
@@ -62,7 +61,7 @@ std::optional<dvec3> RayTree::follow(const Branch& branch, const TraceSettings& 
     const Material& material = geometry_.materials()[static_cast<std::size_t>(hit->material)];
     if (material.mirror <= 0 && !material.refractive_index) return shading_.surface(*hit, sample, sunlight_);
 
-    const double cosine = -glm::dot(p, hit->normal) / glm::length(p);  // > 0: the normal is on the ray's side
+    const double cosine = -glm::dot(p, hit->normal) / glm::length(p);  // > 0, since the normal is on the ray's side
     const dvec3 reflected = p - 2 * glm::dot(p, hit->normal) * hit->normal;
     const auto branch_off = [&](const dvec3& direction, double part, bool across, int inside) -> dvec3 {
         const double weight = branch.weight * part;
@@ -83,7 +82,7 @@ std::optional<dvec3> RayTree::follow(const Branch& branch, const TraceSettings& 
     const double sine2 = (n1 / n2) * (n1 / n2) * (1 - cosine * cosine);
     if (!(sine2 < 1)) return branch_off(reflected, 1, false, branch.inside);  // total reflection
     const double cosine2 = std::sqrt(1 - sine2);
-    const dvec3 along = p / glm::length(p) + cosine * hit->normal;  // of the unit direction along the surface
+    const dvec3 along = p / glm::length(p) + cosine * hit->normal;  // the part of the unit direction along the surface
     const dvec3 refracted = (n1 / n2) * along - cosine2 * hit->normal;
     const double R = fresnel_reflectance(n1, cosine, n2, cosine2);
     return branch_off(reflected, R, false, branch.inside) +

@@ -1,17 +1,19 @@
-/// The paper's ray tree: the radiance that comes along a bent ray, with what mirrors and glass send it from elsewhere.
+/// The paper's ray tree: the radiance along a bent ray, with the light that mirrors and glass send from elsewhere.
 ///
-/// At a surface, `mirror` of the light is reflected, the rest is matte (shading.h). A surface of glass
-/// (`refractive_index`) reflects the part that Fresnel's equations for unpolarised light give, and refracts the rest by
-/// Snell's law: the part of p along the surface is the same on both sides, |p| is the index. Reflected and refracted
-/// rays go on bent. Within glass there is no air: rays are straight, until they leave it by its own surface.
+/// A surface reflects the part `mirror` of the light as a mirror, and the rest is matte (shading.h). A surface of glass
+/// (`refractive_index`) reflects the part that Fresnel's equations give for unpolarised light. It refracts the rest by
+/// Snell's law: |p| is the index, and the part of p along the surface is the same on both sides. Reflected and
+/// refracted rays go on bent. There is no air within glass: rays are straight until they leave it through its own
+/// surface.
 ///
-/// A branch ends at kDeepestBranch surfaces or when less than kFaintest of its light can reach the pixel, and is then
-/// black. Rays that have no end (BentHit::ended) are black, too.
+/// A branch ends after kDeepestBranch surfaces, or when less than kFaintest of its light can reach the pixel. It is
+/// then black. Rays without an end (BentHit::ended) are black too.
+/// Theory: PHYSICS.md#tracer.
 #pragma once
 
 #include "reference/trace/bent_ray.h"
-#include "reference/trace/cancel.h"
 #include "reference/trace/shading.h"
+#include "reference/trace/stop.h"
 
 namespace eikonal::reference {
 
@@ -25,21 +27,22 @@ class RayTree {
   public:
     /// field: null for straight rays. sunlight: null for straight sunlight.
     RayTree(const Geometry& geometry, const Shading& shading, const AirInstant* field, const Shadowgraph* sunlight,
-            Cancelled cancelled)
-        : geometry_(geometry), shading_(shading), field_(field), sunlight_(sunlight), cancelled_(cancelled) {}
+            const std::stop_token& stop)
+        : geometry_(geometry), shading_(shading), field_(field), sunlight_(sunlight), stop_(stop) {}
 
-    /// direction: of any length. trace: how its ray and all that follow are traced; of straight ones nothing is read.
-    /// Nothing if the ray itself has no end. FrameError: cancelled.
+    /// The radiance along one ray. direction: of any length. trace: settings of this ray and of all rays that follow;
+    /// not used for straight rays. Nothing if the ray itself has no end. FrameError once a stop is requested; the
+    /// token must outlive this.
     std::optional<dvec3> radiance(const dvec3& origin, const dvec3& direction, const TraceSettings& trace,
                                   const LightSample& sample) const;
 
   private:
-    /// A ray on its way: p where it starts, what part of its light reaches the pixel.
+    /// A ray of the tree: its start with p there, and the part of its light that reaches the pixel.
     struct Branch {
         dvec3 origin, p;
-        double weight, distance;  ///< distance: path from the camera [m]
+        double weight, distance;  ///< distance: length of path from the camera [m]
         int depth;
-        int inside;  ///< object of whose glass it is within, -1 for air
+        int inside;  ///< the object whose glass the ray is in, -1 for air
     };
     std::optional<dvec3> follow(const Branch& branch, const TraceSettings& trace, const LightSample& sample) const;
     std::optional<Hit> meet(const Branch& branch, const TraceSettings& trace, dvec3& p, double& length,
@@ -50,11 +53,11 @@ class RayTree {
     const Shading& shading_;
     const AirInstant* field_;
     const Shadowgraph* sunlight_;
-    Cancelled cancelled_;
+    const std::stop_token& stop_;
 };
 
-/// Part of unpolarised light that is reflected where it passes from index n1 to n2 at cosines cos1, cos2 to the normal
-/// (Fresnel).
+/// The part of unpolarised light that is reflected where it passes from index n1 to index n2 (Fresnel). cos1, cos2:
+/// cosines of the angles to the normal.
 double fresnel_reflectance(double n1, double cos1, double n2, double cos2);
 
 }  // namespace eikonal::reference

@@ -4,37 +4,27 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numeric>
 
 #include "noise/base/error.h"
 #include "noise/math/random.h"
+#include "reference/trace/frame_air.h"
 #include "reference/trace/sampler.h"
 #include "warp/image/pixel_codec.h"
+#include "warp/scene/background.h"
 
 namespace eikonal::reference {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Small pictures of slow rays need tiles enough for all threads.
+/// Small pictures get small tiles, so that there are enough of them for all threads.
 constexpr int kTileSize = 32, kSmallTile = 8, kSmallPicture = 256 * 256;
 constexpr int kSightRays = 33;
-/// A ray wanders that is nearer its start than this part of its length.
-constexpr double kStraightEnough = 0.8;
-/// What is ahead of a ray is looked at in this part of the way to it.
-constexpr double kStrides = 16;
 constexpr float kTrappedId = -1, kNoIndexId = -2, kUnfinishedId = -3;
-/// Of a straight ray through its own hit, by rounding [px].
+/// Largest displacement that rounding alone may give a straight ray [px].
 constexpr double kRoundingShift = 1e-7;
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 int tiles_across(int pixels, int side) {
     return (pixels + side - 1) / side;
@@ -48,34 +38,7 @@ std::size_t count(const std::vector<float>& values, float wanted) {
     return static_cast<std::size_t>(std::count(values.begin(), values.end(), wanted));
 }
 
-/// How many of the longest steps that the field allows there are along a straight ray, from here to there.
-double longest_steps(const AirInstant& field, const dvec3& origin, const dvec3& direction, double from, double to) {
-    const double crossing = 1e-9 * (to + glm::length(origin));
-    double count = 0;
-    for (double w = from; w < to;) {
-        const dvec3 at = origin + w * direction;
-        double way = field.clear_way(at, direction);
-        if (way > 0) {
-            count += 1;
-        } else {
-            const double longest = field.longest_step(at, direction);
-            way = std::min({std::max(longest, (w - from) / kStrides), field.way_to_edge(at, direction), to - w});
-            count += way / longest;
-        }
-        w += way + crossing;
-    }
-    return count;
-}
-
 }  // namespace
-
-/// The media at one frame, and the light that has passed through them.
-struct Renderer::FrameAir {
-    AirInstant field;
-    TraceSettings trace;
-    std::optional<Shadowgraph> sunlight;
-    std::optional<double> background;
-};
 
 std::size_t RenderedFrame::trapped() const {
     return count(id, kTrappedId) + unfinished();
@@ -89,23 +52,6 @@ std::size_t RenderedFrame::without_index() const {
 std::size_t RenderedFrame::folded() const {
     return static_cast<std::size_t>(
         std::count_if(magnification.begin(), magnification.end(), [](float m) { return m < 0; }));
-}
-
-CameraRay camera_ray(const Camera& camera, double px, double py) {
-    const dvec2 s = camera.slope(px, py);
-    const dvec3 across = s.x * camera.right + s.y * camera.up;
-    if (camera.projection == Projection::Orthographic) return {camera.position + across, camera.forward};
-    return {camera.position, camera.forward + across};
-}
-
-Bundle pixel_bundle(const Camera& camera, double px, double py) {
-    const dvec3 right = camera.right / camera.f_px, down = -camera.up / (camera.f_px * camera.pixel_aspect);
-    if (camera.projection == Projection::Orthographic) return {Differential{right, {}}, Differential{down, {}}};
-    const dvec3 d = camera_ray(camera, px, py).direction;
-    const double length = glm::length(d);
-    const dvec3 unit = d / length;
-    const auto turn = [&](const dvec3& change) { return (change - glm::dot(change, unit) * unit) / length; };
-    return {Differential{{}, turn(right)}, Differential{{}, turn(down)}};
 }
 
 Renderer::Renderer(const Scene& scene, const RenderSettings& settings)
@@ -126,7 +72,7 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings)
                         settings.light_rays, !scene_.light ? "[light]" : "[[object]] of shape quad"));
 }
 
-/// Of kSightRays² straight rays the longest way to what they meet [m]; of one that meets nothing `open`.
+/// The longest way of kSightRays² straight rays to what they meet [m]. A ray that meets nothing counts as `open`.
 double Renderer::longest_way(const Camera& camera, double open) const {
     double longest = 0;
     for (int j = 0; j < kSightRays; ++j)
@@ -138,11 +84,11 @@ double Renderer::longest_way(const Camera& camera, double open) const {
     return longest;
 }
 
-/// Of the shot's narrowest view.
+/// The ends of rays in the shot's narrowest view.
 RayEnds Renderer::ray_ends() const {
     Camera camera = path_.reference();
     if (path_.moving()) camera.f_px = std::max(camera.f_px, path_.at(path_.frames()[1]).f_px);
-    return {longest_way(camera, far_distance(scene_)), settings_.rays.tolerance_px / camera.f_px,
+    return {longest_way(camera, far_of_scene(scene_)), settings_.rays.tolerance_px / camera.f_px,
             camera.projection == Projection::Perspective};
 }
 
@@ -181,7 +127,7 @@ std::optional<Renderer::FrameAir> Renderer::air_at(int frame, const Camera& came
     if (settings_.straight) return std::nullopt;
     FrameAir air{air_->at(frame), air_->trace_settings(camera), {}, {}};
     if (air.trace.perspective) air.trace.start_at(air.field, camera.position);
-    const double far = far_distance(scene_);
+    const double far = far_of_scene(scene_);
     air.trace.sight = air.trace.perspective ? air.trace.far : std::max(far, longest_way(camera, far));
     return air;
 }
@@ -197,7 +143,7 @@ RenderedFrame Renderer::render(int frame, const FrameWatch& watch, std::optional
         watch.probed(probe);
     }
     if (air && settings_.light_rays > 0 && scene_.light && settings_.colour)
-        air->sunlight.emplace(scene_, geometry_, air->field, air->trace, settings_.light_rays, settings_.cancelled,
+        air->sunlight.emplace(scene_, geometry_, *air_, air->field, air->trace, settings_.light_rays, settings_.stop,
                               watch.light);
     if (watch.tiles_begin) watch.tiles_begin();
     tbb::parallel_for(0, tile_count(), [&](int index) {
@@ -219,7 +165,7 @@ void Renderer::render_tile(const Camera& camera, int frame, const Tile& tile, co
                          into);
 }
 
-/// Of no samples: without colour. The end of its centre's bent ray.
+/// Renders pixel (x, y) into place i. 0 samples: without colour. Returns the end of its centre's bent ray.
 BentHit Renderer::render_pixel(const Camera& camera, int frame, int x, int y, const FrameAir* air, int samples,
                                std::size_t i, RenderedFrame& into) const {
     BentHit end;
@@ -235,92 +181,6 @@ BentHit Renderer::render_pixel(const Camera& camera, int frame, int x, int y, co
     return end;
 }
 
-Probe Renderer::probe(int frame, const ProbeLimits& limits) const {
-    const auto start = Clock::now();
-    const Camera camera = path_.at(frame);
-    std::optional<FrameAir> air = air_at(frame, camera);
-    const double setup = since(start);
-    Probe probe = try_rays(camera, frame, air ? &*air : nullptr, limits);
-    probe.setup = setup;
-    return probe;
-}
-
-Probe Renderer::try_rays(const Camera& camera, int frame, FrameAir* air, const ProbeLimits& limits) const {
-    Probe probe;
-    probe.samples = std::min(settings_.colour ? settings_.samples : 0, limits.samples);
-    probe.pixels = planes(limits.most, 1, probe.samples > 0);
-    if (air) air->trace.tried_steps = limits.steps;
-    if (air) probe.step_limit = air->trace.most_steps();
-    std::vector<double> to_come(static_cast<std::size_t>(limits.most), 0.0);
-    const auto start = Clock::now();
-    int done = 0;
-    for (int until = limits.first; done < until; until = std::min(2 * until, limits.most)) {
-        tbb::parallel_for(done, until, [&](int i) {
-            const dvec2 place = spread_point(static_cast<std::uint32_t>(i), 0);
-            const int x = static_cast<int>(place.x * width_), y = static_cast<int>(place.y * height_);
-            const auto at = static_cast<std::size_t>(i);
-            const BentHit end = render_pixel(camera, frame, x, y, air, probe.samples, at, probe.pixels);
-            if (end.end == BentHit::End::Unfinished) to_come[at] = steps_to_come(camera, x, y, *air, end);
-        });
-        done = until;
-        probe.seconds = since(start);
-        if (probe.seconds > limits.seconds) break;
-    }
-    if (air) air->trace.tried_steps = TraceSettings().tried_steps;
-    for (const double steps : to_come) {
-        const double most = air ? air->trace.step_budget - probe.step_limit : 0;
-        probe.steps_to_come += std::min(steps, most);
-        if (steps > most) ++probe.beyond;
-    }
-    probe.pixels.width = done;
-    RenderedFrame& p = probe.pixels;
-    for (auto* plane : {&p.depth, &p.length, &p.u, &p.v, &p.id, &p.steps, &p.error, &p.magnification})
-        if (!plane->empty()) plane->resize(static_cast<std::size_t>(done));
-    return probe;
-}
-
-/// Compares the rays that a probe has tried and that came to an end with themselves at a finer tolerance.
-void Renderer::try_again(const Camera& camera, int frame, FrameAir& air, Probe& probe) const {
-    const double tolerance = air.trace.tolerance_px;
-    air.trace.tolerance_px *= kFinerTried;
-    ProbeLimits limits;
-    limits.first = limits.most = probe.pixels.width;
-    const Probe finer = try_rays(camera, frame, &air, limits);
-    air.trace.tolerance_px = tolerance;
-    for (std::size_t i = 0; i < probe.pixels.u.size(); ++i) {
-        const RenderedFrame &a = probe.pixels, &b = finer.pixels;
-        if (a.id[i] < 0 || a.id[i] != b.id[i]) continue;  // what is seen at edges is another matter
-        const double off = std::hypot(double{a.u[i]} - b.u[i], double{a.v[i]} - b.v[i]);
-        ++probe.again;
-        if (off > kPessimism * tolerance) ++probe.off;
-        probe.farthest_off = std::max(probe.farthest_off, off);
-    }
-}
-
-/// Of a ray that was given up: as if it went on, along the straight one and to where that ends, at the same number of
-/// steps for each of the longest that the field allows. One that wanders comes twice as far in four times the steps.
-/// One that is past that end has missed it.
-double Renderer::steps_to_come(const Camera& camera, int x, int y, const FrameAir& air, const BentHit& tried) const {
-    const CameraRay ray = camera_ray(camera, x + 0.5, y + 0.5);
-    const dvec3 direction = glm::normalize(ray.direction);
-    const auto hit = geometry_.nearest(ray.origin, direction, 0, air.trace.far);
-    const double way = glm::distance(tried.at.x, ray.origin);
-    const bool wanders = way < kStraightEnough * tried.length;
-    const double come = wanders ? way : tried.length;
-    const double end = hit && hit->t > come ? hit->t : air.trace.far;
-    const double taken = longest_steps(air.field, ray.origin, direction, 0, come);
-    const double ahead = longest_steps(air.field, ray.origin, direction, come, end);
-    if (!(taken > 0)) return kInfinity;
-    const double times = 1 + ahead / taken;
-    return tried.steps * ((wanders ? times * times : times) - 1);
-}
-
-double Probe::time(double area, int samples_each) const {
-    const double steps = std::accumulate(pixels.steps.begin(), pixels.steps.end(), 0.0);
-    return seconds * area / pixels.width * (1 + samples_each) / (1 + samples) *
-           (steps > 0 ? 1 + steps_to_come / steps : 1);
-}
-
 dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const FrameAir* air, int samples,
                        bool has_end) const {
     const auto pixel =
@@ -331,7 +191,7 @@ dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Fram
     const std::uint64_t pixel_bits = bits("pixel position"), sun_bits = bits("sun direction"),
                         sky_bits = bits("sky direction");
     const RayTree tree(geometry_, shading_, air ? &air->field : nullptr,
-                       air && air->sunlight ? &*air->sunlight : nullptr, settings_.cancelled);
+                       air && air->sunlight ? &*air->sunlight : nullptr, settings_.stop);
     const TraceSettings straight;
     dvec3 sum(0);
     for (int k = 0; k < samples && (has_end || k < kTriedSamples); ++k) {
@@ -348,7 +208,7 @@ dvec3 Renderer::colour(const Camera& camera, int frame, int x, int y, const Fram
 }
 
 void Renderer::center_straight(const Camera& camera, int x, int y, std::size_t i, RenderedFrame& into) const {
-    check_cancelled(settings_.cancelled);
+    check_stop(settings_.stop);
     const CameraRay ray = camera_ray(camera, x + 0.5, y + 0.5);
     const auto hit = geometry_.intersect(ray.origin, ray.direction, 0, kInfinity);
     into.depth[i] = static_cast<float>(hit ? hit->t : kInfinity);
@@ -363,9 +223,9 @@ BentHit Renderer::center_bent(const Camera& camera, int x, int y, const FrameAir
     Bundle bundle{};
     const Bundle pixels = pixel_bundle(camera, center.x, center.y);
     if (bundled) bundle = pixels;
-    check_cancelled(settings_.cancelled);
+    check_stop(settings_.stop);
     const BentHit end = trace(air.field, &geometry_, ray.origin, direction, air.trace, bundled ? &bundle : nullptr,
-                              watch(settings_.cancelled));
+                              watch(settings_.stop));
     into.steps[i] = static_cast<float>(end.steps);
     into.error[i] = static_cast<float>(end.error_px);
     into.depth[i] = into.length[i] = static_cast<float>(kInfinity);
@@ -377,7 +237,7 @@ BentHit Renderer::center_bent(const Camera& camera, int x, int y, const FrameAir
         return end;
     }
     const bool perspective = camera.projection == Projection::Perspective;
-    // what is seen, from the camera: a point, or the direction of infinitely far background
+    // What is seen, relative to the camera: a point, or the direction of an infinitely far background.
     dvec3 seen = end.at.x - camera.position;
     if (end.hit) {
         into.id[i] = static_cast<float>(end.surface.object + 1);
@@ -394,7 +254,7 @@ BentHit Renderer::center_bent(const Camera& camera, int x, int y, const FrameAir
     const double scale = perspective ? 1 / forward : 1;
     if (!perspective || forward > 0) {
         const dvec2 shown = camera.pixel({glm::dot(seen, camera.right) * scale, glm::dot(seen, camera.up) * scale});
-        // a straight ray's own rounding is no displacement
+        // The rounding of a straight ray is no displacement.
         const dvec2 d = shown - center;
         into.u[i] = std::abs(d.x) < kRoundingShift ? 0.0f : static_cast<float>(d.x);
         into.v[i] = std::abs(d.y) < kRoundingShift ? 0.0f : static_cast<float>(d.y);

@@ -1,51 +1,54 @@
-/// Renders one frame of a scene: with straight rays, the undistorted plate and the depth that the warp takes as input;
-/// with bent ones, what a camera in that air sees, and by how much every pixel is displaced.
+/// Renders one frame of a scene. Straight rays give the undistorted plate and the depth that the warp takes as input.
+/// Bent rays give what a camera in that air sees, and by how much each pixel is displaced.
 ///
-/// Output: colour R, G, B (linear) and A = 1, the mean over each pixel's square (box filter). Everything else belongs
-/// to the ray through the pixel's *centre* and never mixes two surfaces:
-///     Z          axial depth of the surface seen [m]; infinity where there is only background
-///     length     of the ray's path to it [m]; infinity likewise                                   (bent rays, here and
-///     below) u, v       pixel where straight rays show that same point, minus this pixel: out(p) = in(p + d), y down
-///     [px].
-///                Background is infinitely far in perspective, unless render() is told, at `far` in orthographic
-///                views
-///     id         1 + index of the object seen, 0 for background; black: -1 for a ray that gets nowhere (kTrapTurn of
-///                bent_ray.h), -2 for one that came to where n <= 0, -3 for one that its step budget ended
-///     steps      of the integrator
-///     error      its estimate of the error of u, v [px]
-///     magnification   (if asked for) of distant things, in area; negative: folded, mirrored (ray_differential.h)
+/// Colour is R, G, B (linear) and A = 1, the mean over each pixel's square (box filter). All other planes belong to the
+/// ray through the pixel's *centre* and never mix two surfaces:
+///     Z               axial depth of the surface seen [m]; infinity for background
+/// Bent rays only:
+///     length          length of the ray's path to the surface [m]; infinity for background
+///     u, v            the pixel where straight rays show the same point, minus this pixel [px]: out(p) = in(p + d), y
+///     down.
+///                     The background is infinitely far in perspective, unless render() is told otherwise, and at `far`
+///                     in orthographic views
+///     id              1 + index of the object seen, 0 for background. Black pixels have -1 for a trapped ray
+///     (kTrapTurn of
+///                     bent_ray.h), -2 for one that came to n <= 0, and -3 for one whose step budget was used up
+///     steps           steps of the integrator
+///     error           estimated error of u, v [px]
+///     magnification   of distant things in area (ray_differential.h), if asked for. Negative: folded, hence mirrored
 ///
-/// The same bytes for any number of threads: every sample is a pure function of scene, frame, pixel and its index.
-/// Where a pixel's centre and its first kTriedSamples samples have no end the others are taken to have none: black.
-/// Not finite radiance never leaves: it is limited to 0 … the largest half.
+/// The bytes are the same for any number of threads: every sample is a pure function of scene, frame, pixel and its
+/// index. A pixel is black without further samples if the rays of its centre and of its first kTriedSamples samples
+/// have no end. Radiance is limited to 0 … the largest half, and NaN becomes 0.
 ///
-/// Failures: UserError for the scene (geometry.h, shading.h, camera.h, noise/air/air.h), FrameError when a frame cannot
-/// be rendered or is given up (cancel.h).
+/// Failures: UserError for the scene (geometry.h, shading.h, camera.h, noise/air/air.h). FrameError if a frame cannot
+/// be rendered, or if the render is given up.
 #pragma once
 
 #include <functional>
 
-#include "reference/trace/cancel.h"
+#include "reference/trace/camera_ray.h"
 #include "reference/trace/ray_tree.h"
 #include "reference/trace/scene_air.h"
 #include "reference/trace/shadowgraph.h"
+#include "reference/trace/stop.h"
 #include "warp/scene/camera.h"
 
 namespace eikonal::reference {
 
 inline constexpr int kTriedSamples = 3;
-/// Part of the tolerance that rays are tried again with: steps' own estimates do not know how far apart the air spreads
-/// what they err by.
+/// The part of the tolerance with which rays are tried again. The steps' own error estimates do not know how far the
+/// air spreads their errors apart.
 inline constexpr double kFinerTried = 0.01;
 
 struct RenderSettings {
-    int samples = 16;  ///< of colour a pixel >= 1
+    int samples = 16;  ///< samples of colour for each pixel >= 1
     bool straight = false;
     RaySettings rays;
     bool magnification = false;
-    int light_rays = 0;  ///< across a side of each quad, for the shadowgraph (shadowgraph.h); 0: straight sunlight
-    bool colour = true;  ///< false: only what belongs to pixels' centres
-    Cancelled cancelled = nullptr;
+    int light_rays = 0;         ///< rays across a side of each quad (shadowgraph.h). 0: straight sunlight
+    bool colour = true;         ///< false: only the planes of pixels' centres
+    std::stop_token stop = {};  ///< once requested, a render ends with a FrameError
 };
 
 /// Planes of width * height pixels. Those of bent rays are empty for straight ones.
@@ -55,43 +58,45 @@ struct RenderedFrame {
     std::vector<float> depth;  ///< axial [m]
     std::vector<float> length, u, v, id, steps, error, magnification;
 
-    /// Rays through pixels' centres that gave no answer: those that get nowhere or that their budget ended, of them the
-    /// latter, and those that came to where n <= 0. And those that were folded.
+    /// How many rays through pixels' centres are trapped or unfinished.
     std::size_t trapped() const;
+    /// How many of them used up their step budget.
     std::size_t unfinished() const;
+    /// How many came to a place with n <= 0.
     std::size_t without_index() const;
+    /// How many have negative magnification.
     std::size_t folded() const;
 };
 
-/// How much of a frame is tried: pixels spread over it, `first` of them, then as many again and again until there are
-/// `most` or `seconds` are over. Whatever the scene, that is soon: no ray takes more than `steps`.
+/// How much of a frame a probe tries. It begins with `first` pixels spread over the frame. It doubles their number
+/// until there are `most` or `seconds` are over. No ray takes more than `steps`, so a probe is short in any scene.
 struct ProbeLimits {
     int first = 64, most = 64;
     double seconds = 0;
     int steps = 2000;
-    int samples = 0;  ///< of colour, at most
+    int samples = 0;  ///< the most samples of colour
 };
 
-/// What a frame will be like.
+/// What a few pixels tell about the cost and the accuracy of a frame.
 struct Probe {
-    RenderedFrame pixels;      ///< those tried, in one row, under straight sunlight
-    int samples = 0;           ///< of colour a pixel
-    int step_limit = 0;        ///< what ended the rays that `pixels` count as unfinished
-    double steps_to_come = 0;  ///< that those rays would still take, up to their budget
-    std::size_t beyond = 0;    ///< of them, those that would use up their budget
-    /// Of rays tried again with kFinerTried of the tolerance: how many, how many were off by more than kPessimism times
-    /// the tolerance, and by how much at most [px].
+    RenderedFrame pixels;      ///< the pixels tried, in one row, under straight sunlight
+    int samples = 0;           ///< samples of colour for each pixel
+    int step_limit = 0;        ///< number of steps that ended the unfinished rays of `pixels`
+    double steps_to_come = 0;  ///< steps that those rays would still take, up to their budget
+    std::size_t beyond = 0;    ///< how many of those rays would use up their budget
+    /// Rays that were tried again with kFinerTried of the tolerance; those of them that were off by more than
+    /// kPessimism times the tolerance; and the largest difference [px].
     std::size_t again = 0, off = 0;
     double farthest_off = 0;
-    double setup = 0, seconds = 0;  ///< wall time: of the media, of the rays
+    double setup = 0, seconds = 0;  ///< wall time for the media and for the rays [s]
 
-    /// Wall time of so many pixels [s].
+    /// Wall time of `area` pixels with `samples_each` samples [s].
     double time(double area, int samples_each) const;
 };
 
-/// What is told while a frame is rendered; any may be left out.
+/// Callbacks while a frame is rendered. Each may be empty.
 struct FrameWatch {
-    std::function<void(const Probe&)> probed;  ///< of bent rays through pixels' centres, before all others
+    std::function<void(const Probe&)> probed;  ///< after the probe of bent rays, before all other rays
     LightWatch light;
     std::function<void()> tiles_begin;
     std::function<void()> tile_done;  ///< after each of tile_count() tiles, from any thread
@@ -99,11 +104,11 @@ struct FrameWatch {
 
 class Renderer {
   public:
-    /// Reads meshes and textures, and makes the media, once for all frames.
+    /// Reads meshes and textures and makes the media, once for all frames.
     Renderer(const Scene& scene, const RenderSettings& settings);
 
-    /// background: axial depth at which u and v of a perspective view see the background, as the warp does [m] > 0;
-    /// infinitely far if it is not given.
+    /// background: axial depth at which u and v of a perspective view see the background, as in the warp [m] > 0.
+    /// Without it the background is infinitely far.
     RenderedFrame render(int frame, const FrameWatch& watch, std::optional<double> background = {}) const;
     RenderedFrame render(int frame, const std::function<void()>& tile_done = {},
                          std::optional<double> background = {}) const {
@@ -114,12 +119,12 @@ class Renderer {
 
     int width() const { return width_; }
     int height() const { return height_; }
-    /// What becomes of each medium; nothing for straight rays.
+    /// What each medium was made into. Empty for straight rays.
     std::vector<std::string> notes() const { return air_ ? air_->notes() : std::vector<std::string>{}; }
 
-    /// Object index of a sphere or closed mesh that the camera is inside of: the picture shows it from within.
+    /// Index of the sphere or closed mesh that the camera is inside of, if any. The picture shows it from within.
     std::optional<int> camera_inside(int frame) const { return geometry_.object_around(camera(frame).position); }
-    /// UserError if bent rays would start below a heated surface, where no air is. (Straight ones may.)
+    /// UserError if bent rays would start below a heated surface, where there is no air. (Straight rays may.)
     void check_camera(int frame) const;
     Camera camera(int frame) const { return path_.at(frame); }
 
@@ -152,15 +157,5 @@ class Renderer {
     Shading shading_;
     std::optional<SceneAir> air_;  ///< none for straight rays
 };
-
-/// The straight ray of a pixel position: origin and direction. The direction is not of unit length but has axial
-/// component 1, so that a distance along it is an axial depth.
-struct CameraRay {
-    dvec3 origin, direction;
-};
-CameraRay camera_ray(const Camera& camera, double px, double py);
-
-/// How camera_ray changes from pixel to pixel: of the origin, and of the unit direction.
-Bundle pixel_bundle(const Camera& camera, double px, double py);
 
 }  // namespace eikonal::reference

@@ -20,12 +20,12 @@ constexpr Tableau kA = {{{},
                          {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
                          {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}}};
 constexpr double kC[kStages] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-/// Fifth less fourth order.
+/// The weights of fifth order minus those of fourth order.
 constexpr std::array<double, kStages> kE = {71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
                                             -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
-/// dx/du of a stage is p and what the forces before have turned it by, hence x_i = x + c_i h p + h² Σ (A²)_ij F_j, and
-/// the error of x is h² Σ (E A)_j F_j.
+/// dx/du of a stage is p plus the turn by the earlier forces. Hence x_i = x + c_i h p + h² Σ (A²)_ij F_j, and the error
+/// of x is h² Σ (E A)_j F_j.
 constexpr std::array<double, kStages> times_A(const std::array<double, kStages>& row) {
     std::array<double, kStages> product{};
     for (std::size_t j = 0; j < kStages; ++j)
@@ -92,7 +92,7 @@ void euler(Step& step) {
     step.turn = step.h * step.force_from;
 }
 
-/// Length of a piece of curve du long from its chord and dx/du at its start, middle and end.
+/// Length of a piece of curve over du, from its chord and from dx/du at its start, middle and end.
 double length_of(const dvec3& chord, double du, const std::array<dvec3, 3>& p) {
     const double length = glm::length(chord);
     if (!(length > 0)) return 0;
@@ -100,7 +100,7 @@ double length_of(const dvec3& chord, double du, const std::array<dvec3, 3>& p) {
     return length + du / 6 * (longer(p[0]) + 4 * longer(p[1]) + longer(p[2]));
 }
 
-/// Force at the end, and the local error against Simpson's rule.
+/// Sets the force at the end, and the local error by comparison with Simpson's rule.
 void finish(const AirInstant& field, Step& step) {
     const double h = step.h;
     const RayState end = step.to();
@@ -113,8 +113,8 @@ void finish(const AirInstant& field, Step& step) {
 
 }  // namespace
 
-// With T = h: x(θ) = x0 + θ h p0 + θ² h² F0/2 + θ³(10 D - 4 V + A/2) + θ⁴(-15 D + 7 V - A) + θ⁵(6 D - 3 V + A/2), where
-// D, V, A are what x1, h p1 and h² F1 exceed the parabola by.
+// The quintic: x(θ) = x0 + θ h p0 + θ² h² F0/2 + θ³(10 D - 4 V + A/2) + θ⁴(-15 D + 7 V - A) + θ⁵(6 D - 3 V + A/2).
+// D, V and A are the differences of x1, h p1 and h² F1 from the parabola.
 dvec3 Step::excess_shift() const {
     return shift - h * from.p - 0.5 * h * h * force_from;
 }
@@ -164,13 +164,13 @@ dvec3 Step::force(double theta) const {
                              theta * (-180.0 * D + 84.0 * V - 12.0 * A + theta * (120.0 * D - 60.0 * V + 10.0 * A)));
 }
 
-// The chord is as exact as the step; Simpson's rule tells by how much the curve is longer: |p| may rise and fall within
-// a step, which makes neither longer.
+// The chord is as exact as the step. Simpson's rule gives the excess of the curve over the chord. The integral of |p|
+// would not do: |p| may rise and fall within a step, which changes neither length.
 double Step::length(double theta) const {
     return length_of(offset(theta), theta * h, {from.p, direction(0.5 * theta), direction(theta)});
 }
 
-// The curve's direction at its middle, by the formulas above.
+// The curve's direction at its middle, by the quintic above.
 double Step::length() const {
     if (straight || h == 0) return h * glm::length(from.p);
     const dvec3 middle = 1.875 / h * shift - 0.875 * from.p - 0.4375 * turn + h / 32 * (force_to - force_from);

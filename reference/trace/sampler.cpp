@@ -23,9 +23,9 @@ std::uint32_t mixed(std::uint32_t x, std::uint32_t seed) {
     return x;
 }
 
-/// Second dimension of Sobol's sequence (primitive polynomial x + 1), its bits reversed: direction number k is
-/// (1 + S)^k of the first, S a shift by one, hence bit j the sum of all index bits k with an odd binomial (k over j),
-/// which is those whose k has every bit of j.
+/// The second dimension of Sobol's sequence (primitive polynomial x + 1), with reversed bits. Direction number k is
+/// (1 + S)^k applied to the first one, where S is a shift by one. So bit j is the sum of all index bits k whose
+/// binomial (k over j) is odd. These are the k that have every bit of j.
 std::uint32_t sobol_second(std::uint32_t index) {
     index ^= (index >> 1) & 0x55555555u;
     index ^= (index >> 2) & 0x33333333u;

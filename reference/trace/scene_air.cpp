@@ -5,44 +5,40 @@
 #include <glm/geometric.hpp>
 
 #include "noise/base/memory.h"
+#include "noise/surface/surface_spec.h"
 #include "warp/pixels/depth_range.h"
 #include "warp/scene/background.h"
-#include "warp/scene/screen_view.h"
+#include "warp/scene/shot_view.h"
 
 namespace eikonal::reference {
 namespace {
 
-/// What interpolation may bend a ray by after 1 m [m^-1/2], to be off by half of the tolerance as it ends.
+/// The bend by interpolation after 1 m [m^-1/2] for which a ray is off by half of the tolerance at its end.
 double bend_error(const RayEnds& ends) {
     return 0.5 * ends.tolerance / kMostOfRms / (std::sqrt(ends.way / 3) * (ends.seen_from_start ? 1 : ends.way));
 }
 
-Air make_field(const Scene& scene, const RayEnds& ends, const CameraPath& path, int width, int height) {
-    const Camera camera = path.reference();
-    const ShotFrame frame{camera.position, camera.right, camera.up, camera.forward,
-                          screen_view(camera, width, height, scene.optics.aperture, far_distance(scene),
-                                      scene.time.fps.value_or(kDefaultFps))};
-    return Air(scene.media, scene.optics, frame, memory_limit(), bend_error(ends));
+Air make_air(const Scene& scene, const RayEnds& ends, const CameraPath& path, int width, int height) {
+    const ShotFrame frame = shot_frame(path.reference(), width, height, scene.optics.aperture, far_of_scene(scene),
+                                       scene.time.fps.value_or(kDefaultFps));
+    return Air(scene.media, scene.optics, {frame, memory_limit(), bend_error(ends)});
 }
 
 }  // namespace
-
-double far_distance(const Scene& scene) {
-    return scene.plate.far.value_or(scene.plate.distance.value_or(default_far(scene)));
-}
 
 SceneAir::SceneAir(const Scene& scene, const RaySettings& settings, const RayEnds& ends)
     : scene_(scene),
       settings_(settings),
       width_(scene.camera.resolution.value_or(kDefaultResolution)[0]),
       height_(scene.camera.resolution.value_or(kDefaultResolution)[1]),
-      far_(far_distance(scene)),
+      far_(far_of_scene(scene)),
       path_(scene.camera, width_, height_),
-      field_(make_field(scene, ends, path_, width_, height_)) {
+      air_(make_air(scene, ends, path_, width_, height_)) {
     if (scene.media.size() == 1)
-        if (const auto* surface = std::get_if<SurfaceSpec>(&scene.media.front()))
+        if (const auto* surface = scene.media.front().get_if<SurfaceSpec>())
             lone_ = std::make_shared<LoneSurface>(*surface, scene.optics);
-    baseline_surface(settings.integrator, scene.media);  // refuses what the integrator cannot do before any frame
+    baseline_surface(settings.integrator,
+                     scene.media);  // throws here, before any frame, if the integrator cannot follow the media
 }
 
 double SceneAir::time(int frame) const {
@@ -51,9 +47,9 @@ double SceneAir::time(int frame) const {
 
 std::optional<SceneAir::Below> SceneAir::below_surface(const dvec3& at) const {
     for (std::size_t i = 0; i < scene_.media.size(); ++i) {
-        const auto* surface = std::get_if<SurfaceSpec>(&scene_.media[i]);
-        if (!surface || surface->surface_temperature == scene_.optics.ambient_temperature) continue;
-        const double height = glm::dot(at - surface->origin, glm::normalize(surface->normal));
+        const std::optional<GroundPlane> ground = scene_.media[i].mirage_ground(scene_.optics);
+        if (!ground) continue;
+        const double height = ground->height(at);
         if (!(height > 0)) return Below{i, 0.0 - height};
     }
     return {};

@@ -1,7 +1,7 @@
-/// The air of a scene at any frame, as the tracer's rays need it: its field of index and how rays are to be followed.
+/// The air of a scene at any frame, for the tracer: the field of index, and the settings by which rays are followed.
 ///
-/// Frame F is at t = (F - first_frame)/fps; thin screens stand before the camera of the shot's first key, out to the
-/// plate's far distance, exactly as `eikonal warp` places them for the same scene.
+/// Frame F is at t = (F - first_frame)/fps. Thin screens stand before the camera of the shot's first key, out to the
+/// plate's far distance, exactly where `eikonal warp` places them for the same scene.
 #pragma once
 
 #include "reference/trace/baselines.h"
@@ -9,10 +9,11 @@
 
 namespace eikonal::reference {
 
-/// Steps of a ray. Those of samples/ take 600 at most, at a tolerance of 1e-6 px; a kilometre of a fine lattice 40000.
+/// The most steps of a ray. Rays of samples/ take at most 600 at a tolerance of 1e-6 px. A kilometre of a fine lattice
+/// takes 40000.
 inline constexpr int kStepBudget = 100000;
 
-/// Length of path after which a ray has met nothing [m], if the scene states no farther.
+/// Length of path after which a ray that met nothing ends [m], unless the scene goes farther.
 inline constexpr double kFarthestSight = 1e6;
 
 /// How rays are followed.
@@ -20,35 +21,34 @@ struct RaySettings {
     Integrator integrator = Integrator::Adaptive;
     double tolerance_px = 0.01;     ///< of the final displacement [px] > 0
     double step = 0;                ///< see TraceSettings
-    int step_budget = kStepBudget;  ///< of every ray
+    int step_budget = kStepBudget;  ///< the most steps of a ray
 };
 
-/// How far rays go, and what they may be off by as they end, which lattices are made fine enough for: all > 0.
+/// How far rays go, and how far off they may be at their end. Lattices are made fine enough for this. All are > 0.
 struct RayEnds {
     double way = 1;                                              ///< [m]
-    double tolerance = std::numeric_limits<double>::infinity();  ///< [rad], seen from where they start, or [m]
-    bool seen_from_start = true;                                 ///< which of both
+    double tolerance = std::numeric_limits<double>::infinity();  ///< [rad] as seen from the start, or [m]
+    bool seen_from_start = true;                                 ///< whether tolerance is an angle
 };
-
-/// The distance at which the warp sees the scene's background [m].
-double far_distance(const Scene& scene);
 
 /// Immutable, thread-safe.
 class SceneAir {
   public:
-    /// Keeps a reference to the scene. UserError: noise/air/air.h, camera.h, and media that the integrator cannot
-    /// follow.
+    /// Keeps a reference to the scene. UserError as in noise/air/air.h and camera.h, and for media that the integrator
+    /// cannot follow.
     SceneAir(const Scene& scene, const RaySettings& settings, const RayEnds& ends = {});
 
-    AirInstant at(int frame) const { return field_.at(time(frame)); }
-    /// What each medium has been made into (Air::notes).
-    const std::vector<std::string>& notes() const { return field_.notes(); }
+    AirInstant at(int frame) const { return air_.at(time(frame)); }
+    /// What each medium was made into (Air::notes).
+    std::vector<std::string> notes() const { return air_.notes(); }
+    /// Greatest distance from a point to any part of a bounded medium [m].
+    double farthest_part(const dvec3& from) const { return air_.farthest_part(from); }
     /// Seconds since the scene's first frame.
     double time(int frame) const;
     TraceSettings trace_settings(const Camera& camera) const;
 
-    /// The first heated or cooled surface that the point does not lie above, and how far below it that is [m] >= 0:
-    /// there is no air.
+    /// The first heated or cooled surface that the point does not lie above. There is no air at such a point. depth:
+    /// how far below the surface it lies [m] >= 0.
     struct Below {
         std::size_t medium;
         double depth;
@@ -63,9 +63,9 @@ class SceneAir {
     const Scene& scene_;
     RaySettings settings_;
     int width_, height_;
-    double far_;  ///< of the scene
+    double far_;  ///< far distance of the scene [m]
     CameraPath path_;
-    Air field_;
+    Air air_;
     std::shared_ptr<const LoneSurface> lone_;
 };
 

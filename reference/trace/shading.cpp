@@ -23,7 +23,7 @@ int wrapped(int i, int n) {
     return r < 0 ? r + n : r;
 }
 
-/// key: what names it in the scene, or names the file that does.
+/// key: the scene's key that names the texture, or the file that names it.
 Texture read_texture(const std::filesystem::path& file, const std::string& key) {
     try {
         return Texture(file);
@@ -32,7 +32,7 @@ Texture read_texture(const std::filesystem::path& file, const std::string& key) 
     }
 }
 
-/// The scene's own, or that of a material of its mesh.
+/// The texture of a material, which the scene names or a material of its mesh.
 Texture texture_of(const Scene& scene, const Material& material) {
     const ObjectSpec& object = scene.objects[static_cast<std::size_t>(material.object)];
     const bool own = object.texture == material.texture;
@@ -55,7 +55,7 @@ Texture::Texture(const std::filesystem::path& file) {
 }
 
 dvec3 Texture::at(dvec2 uv, bool wrap_v) const {
-    // Only the fraction matters where it repeats; it also keeps the conversion to int in range.
+    // Only the fraction matters where the texture repeats. It also keeps the conversion to int in range.
     const double u = uv.x - std::floor(uv.x);
     const double v = wrap_v ? uv.y - std::floor(uv.y) : uv.y;
     if (!std::isfinite(u) || !std::isfinite(v)) return dvec3(0);
@@ -131,7 +131,7 @@ dvec3 Shading::sunlight(const Hit& hit, dvec3 to_sun, const Shadowgraph* bent) c
 }
 
 dvec3 Shading::skylight(const Hit& hit, dvec3 to_sun, dvec2 sample) const {
-    // Cosine-weighted direction about n: n plus a point on the unit sphere.
+    // A cosine-weighted direction about n is n plus a point on the unit sphere.
     double s, c;
     portable::sincos_turns(sample.x, s, c);
     const double z = 1 - 2 * sample.y;
@@ -143,7 +143,7 @@ dvec3 Shading::skylight(const Hit& hit, dvec3 to_sun, dvec2 sample) const {
     if (!next) return scene_.light->ambient;
     const Material& material = geometry_.materials()[static_cast<std::size_t>(next->material)];
     const dvec3 color = albedo(*next);
-    // What shines by itself is left out: a lamp of a few pixels found by chance would only speckle the picture.
+    // Emission is left out. A lamp of a few pixels, found by chance, would only speckle the picture.
     if (material.unlit) return color;
     return color * (sunlight(*next, to_sun) + scene_.light->ambient);
 }

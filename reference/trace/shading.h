@@ -1,16 +1,18 @@
-/// What light comes along a ray: surfaces, sun, sky light, background. All radiance is linear; 1 is reference white.
+/// The light along a ray: surfaces, sun, sky light and background. Radiance is linear, and 1 is reference white.
 ///
-/// Without [light] every surface shows its own colour (emissive). With it, a matte surface of colour c under a sun of
-/// colour S along unit direction l (towards the sun) and a sky of uniform colour A shows
+/// Without [light] every surface shows its own colour, as if emissive. With [light], a sun of colour S shines along the
+/// unit direction l (towards the sun), and a sky of uniform colour A surrounds the scene. S and A are what a white
+/// surface shows if it faces the sun, or if it lies under the open sky alone. A matte surface of colour c shows
 ///
-///     L = emission + c ( S max(0, n·l) V  +  mean over the cosine-weighted hemisphere of what it sees ),
+///     L = emission + c ( S max(0, n·l) V  +  mean over the cosine-weighted hemisphere of what it sees )
 ///
-/// S and A being what a white surface facing the sun, or under the open sky alone, shows. V is the visible part of the
-/// sun's disc, of the true angular radius kSunRadius. Each sample sends one ray to the disc and one into the
-/// hemisphere: this brings A where it meets nothing, else the sunlight and, without further rays, sky light A off what
-/// it meets (one bounce). The background picture lights nothing.
+/// V is the visible part of the sun's disc, whose angular radius is the true one, kSunRadius. Each sample sends one ray
+/// to the disc and one into the hemisphere. The latter brings A where it meets nothing. Where it meets a surface, it
+/// brings the sunlight and the sky light A off that surface, without further rays (one bounce). The background picture
+/// lights nothing.
 ///
-/// Failures: UserError naming the key of a texture that is missing or cannot be read.
+/// Failures: UserError with the key of a texture that is missing or cannot be read.
+/// Theory: PHYSICS.md#tracer.
 #pragma once
 
 #include "reference/trace/geometry.h"
@@ -20,7 +22,7 @@ namespace eikonal::reference {
 /// Angular radius of the sun seen from the Earth [rad].
 inline constexpr double kSunRadius = 0.00465;
 
-/// Two pairs of numbers in [0, 1) that choose the rays of one sample.
+/// The random numbers in [0, 1) of one sample: a point of the sun's disc and a direction of the sky.
 struct LightSample {
     dvec2 sun, sky;
 };
@@ -31,7 +33,7 @@ class Texture {
     /// FrameError if it cannot be read.
     explicit Texture(const std::filesystem::path& file);
 
-    /// u to the right, v up, one repeat is [0, 1]. wrap_v: repeats upwards too, else the last row goes on.
+    /// Colour at uv: u to the right, v up, one repeat in [0, 1]. wrap_v: repeat upwards too, else extend the last row.
     dvec3 at(dvec2 uv, bool wrap_v = true) const;
 
   private:
@@ -46,7 +48,7 @@ class Shading {
     /// Reads every texture. Keeps references to both arguments.
     Shading(const Scene& scene, const Geometry& geometry);
 
-    /// Radiance that leaves `hit` towards where the ray came from. sunlight: bent on its way, or null for straight.
+    /// Radiance that leaves `hit` towards the ray's origin. sunlight: null for straight sunlight.
     dvec3 surface(const Hit& hit, const LightSample& sample, const Shadowgraph* sunlight = nullptr) const;
 
     /// Radiance of the background in a direction.
@@ -60,7 +62,8 @@ class Shading {
 
     const Scene& scene_;
     const Geometry& geometry_;
-    dvec3 to_sun_{0, 1, 0}, sun_right_{1, 0, 0}, sun_up_{0, 0, 1};  ///< its centre; the disc's axes, kSunRadius long
+    dvec3 to_sun_{0, 1, 0}, sun_right_{1, 0, 0},
+        sun_up_{0, 0, 1};  ///< direction of its centre, and the disc's axes, kSunRadius long
     std::vector<Texture> textures_;
     std::vector<int> texture_of_material_;  ///< -1: none
     std::optional<Texture> sky_;

@@ -6,44 +6,57 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "noise/blobs/blobs.h"
 #include "reference/trace/direction.h"
 
 namespace eikonal::reference {
 namespace {
 
-/// Beyond the quad's outline, in parts of its diagonal, light may be bent onto it.
+/// Light within this part of the diagonal beyond the quad's outline may be bent onto the quad.
 constexpr double kMargin = 0.05;
 
-/// Greatest distance from a point to what the scene is about.
-double reach_from(const Scene& scene, const dvec3& from) {
+/// The greatest distance from a point to anything in the scene.
+double reach_from(const Scene& scene, const SceneAir& air, const dvec3& from) {
     double reach = glm::distance(from, scene.camera.position);
     for (const ObjectSpec& o : scene.objects) {
         if (o.shape == ObjectShape::Quad)
             reach = std::max(reach, glm::distance(from, o.origin) + o.size[0] + o.size[1]);
         if (o.shape == ObjectShape::Sphere) reach = std::max(reach, glm::distance(from, o.center) + o.radius);
     }
-    for (const MediumSpec& medium : scene.media) {
-        if (const auto* blobs = std::get_if<BlobsSpec>(&medium))
-            for (const BlobHome& home : BlobCloud(*blobs, index_law(scene.optics), "medium").homes())
-                reach = std::max(
-                    reach, glm::distance(from, home.largest.center) + home.radius + kBlobReach * home.largest.sigma);
-        if (const auto* lens = std::get_if<ProfileSpec>(&medium); lens && lens->profile == ProfileKind::Luneburg)
-            reach = std::max(reach, glm::distance(from, lens->center) + lens->radius);
-    }
-    return reach;
+    return std::max(reach, air.farthest_part(from));
 }
 
-/// Where a light ray of the grid met the quad: texture coordinates.
+/// Where a light ray of the grid met the quad, in texture coordinates.
 struct Landing {
     bool met = false;
     dvec2 uv{0, 0};
 };
 
+/// The irradiance of side × side texels, row by row of v: every landing spreads its light over the nearest four.
+std::vector<float> irradiance_map(const std::vector<Landing>& landings, int side) {
+    const auto texels = static_cast<std::size_t>(side);
+    std::vector<double> flux(texels * texels, 0.0);
+    constexpr double each = 1.0 / (kRaysPerTexel * kRaysPerTexel);
+    // One landing after the other, so that sums always run in the same order.
+    for (const Landing& l : landings) {
+        if (!l.met) continue;
+        const double x = l.uv.x * side - 0.5, y = l.uv.y * side - 0.5;
+        const double fx = std::floor(x), fy = std::floor(y);
+        for (int k = 0; k < 4; ++k) {
+            const int i = static_cast<int>(fx) + (k & 1), j = static_cast<int>(fy) + (k >> 1);
+            const double weight = ((k & 1) ? x - fx : 1 - (x - fx)) * ((k >> 1) ? y - fy : 1 - (y - fy));
+            // The outermost texels take the light that would go beyond the edge.
+            const auto column = static_cast<std::size_t>(std::clamp(i, 0, side - 1));
+            const auto row = static_cast<std::size_t>(std::clamp(j, 0, side - 1));
+            flux[row * texels + column] += weight * each;
+        }
+    }
+    return {flux.begin(), flux.end()};
+}
+
 }  // namespace
 
-Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const AirInstant& field,
-                         const TraceSettings& camera_trace, int light_rays, Cancelled cancelled,
+Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const SceneAir& air, const AirInstant& field,
+                         const TraceSettings& camera_trace, int light_rays, const std::stop_token& stop,
                          const LightWatch& watch) {
     const dvec3 light = glm::normalize(scene.light.value().direction);
     const int side = std::max(2, light_rays / kRaysPerTexel);
@@ -55,10 +68,10 @@ Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const Air
         perpendicular_axes(normal, quad.up, right, up);
         const double facing = std::abs(glm::dot(normal, light));
         if (facing < 1e-6) continue;
-        // The grid lies in the quad's own plane, moved back along the light: every ray then stands for the same area.
+        // The grid lies in the quad's own plane, moved back along the light. Every ray then stands for the same area.
         const double diagonal = std::sqrt(quad.size[0] * quad.size[0] + quad.size[1] * quad.size[1]);
-        const double back = reach_from(scene, quad.origin);
-        // A whole number of rays a texel, so that even light gives an even map; beyond the outline by whole rays.
+        const double back = reach_from(scene, air, quad.origin);
+        // Each texel has a whole number of rays, so that even light gives an even map. The margin has whole rays, too.
         const int across = side * kRaysPerTexel;
         const std::array<double, 2> spacing{quad.size[0] / across, quad.size[1] / across};
         const auto beyond = [&](double gap) {
@@ -79,36 +92,16 @@ Shadowgraph::Shadowgraph(const Scene& scene, const Geometry& geometry, const Air
             for (std::size_t i = 0; i < columns; ++i) {
                 const double a = (static_cast<double>(i) + 0.5 - 0.5 * static_cast<double>(columns)) * spacing[0];
                 const dvec3 aim = quad.origin + a * right + b * up;
-                check_cancelled(cancelled);
+                check_stop(stop);
                 const BentHit end = reference::trace(field, &geometry, aim - back * light, light, trace, nullptr,
-                                                     reference::watch(cancelled));
+                                                     reference::watch(stop));
                 if (end.hit && end.surface.object == static_cast<int>(index))
                     landings[j * columns + i] = {true, end.surface.uv};
             }
             if (watch.row_done) watch.row_done();
         });
 
-        Map map{static_cast<int>(index), side, {}};
-        const auto texels = static_cast<std::size_t>(side);
-        map.values.assign(texels * texels, 0);
-        // one after the other: sums in one order
-        std::vector<double> flux(texels * texels, 0.0);
-        constexpr double each = 1.0 / (kRaysPerTexel * kRaysPerTexel);
-        for (const Landing& l : landings) {
-            if (!l.met) continue;
-            const double x = l.uv.x * side - 0.5, y = l.uv.y * side - 0.5;
-            const double fx = std::floor(x), fy = std::floor(y);
-            for (int k = 0; k < 4; ++k) {
-                const int i = static_cast<int>(fx) + (k & 1), j = static_cast<int>(fy) + (k >> 1);
-                const double weight = ((k & 1) ? x - fx : 1 - (x - fx)) * ((k >> 1) ? y - fy : 1 - (y - fy));
-                // light at the very edge stays on its texel
-                const auto column = static_cast<std::size_t>(std::clamp(i, 0, side - 1));
-                const auto row = static_cast<std::size_t>(std::clamp(j, 0, side - 1));
-                flux[row * texels + column] += weight * each;
-            }
-        }
-        for (std::size_t k = 0; k < flux.size(); ++k) map.values[k] = static_cast<float>(flux[k]);
-        maps_.push_back(std::move(map));
+        maps_.push_back({static_cast<int>(index), side, irradiance_map(landings, side)});
     }
 }
 

@@ -1,21 +1,23 @@
-/// Sunlight that hot air has bent on its way: the bright and dark pattern (caustics, shadowgraph) that it casts on
-/// walls, by tracing rays forward from the sun (*added*; the paper's future work).
+/// Sunlight that hot air has bent: the bright and dark pattern (caustics, a shadowgraph) that it casts on walls. Rays
+/// are traced forward from the sun (*added*; future work in the paper).
 ///
-/// For every quad of the scene, parallel rays of the sun's direction, on a grid of `light_rays` a side (and some
-/// beyond its outline), start before the media and are followed bent to the surface that they meet first. Those that
-/// meet the quad bring their light to a map upon it, one texel a kRaysPerTexel rays a side, spread over the nearest
-/// four. The map holds the irradiance over what the sun brings unobstructed, so 0 is shadow and a focus is bright. Each
-/// ray stands for the same flux, hence energy is conserved: heat only moves light about.
+/// Every quad of the scene gets a grid of parallel rays in the sun's direction: `light_rays` a side, and some beyond
+/// the quad's outline. They start before the media and are followed, bent, to the first surface. A ray that meets the
+/// quad brings its light to a map on the quad and spreads it over the nearest four texels. A texel is kRaysPerTexel
+/// rays wide. The map holds the irradiance divided by that of the unobstructed sun: 0 is shadow, and a focus is bright.
+/// Every ray stands for the same flux, so energy is conserved: heat only moves light about.
 ///
-/// The sun counts as a point; other shapes than quads are lit by straight rays. Rays start `reach` before the quad, the
-/// greatest distance from it of: camera, quads, the bounds of spheres and Luneburg lenses, and where blobs may be. Air
-/// without bounds, which is everywhere, bends light from there on only.
+/// The sun counts as a point. Shapes other than quads are lit by straight rays. Rays start at the distance `reach`
+/// before the quad: the greatest distance from the quad to the camera, to other quads, to the bounds of spheres and
+/// Luneburg lenses, and to the places where blobs may be. Air without bounds bends light only from there on.
+/// Theory: PHYSICS.md#tracer.
 #pragma once
 
 #include <functional>
 
 #include "reference/trace/bent_ray.h"
-#include "reference/trace/cancel.h"
+#include "reference/trace/scene_air.h"
+#include "reference/trace/stop.h"
 #include "warp/scene/scene.h"
 
 namespace eikonal::reference {
@@ -23,25 +25,26 @@ namespace eikonal::reference {
 inline constexpr int kRaysPerTexel = 4;
 inline constexpr int kMostLightRays = 8192;
 
-/// Told while light rays are followed; either may be left out.
+/// Callbacks while light rays are followed. Each may be empty.
 struct LightWatch {
-    std::function<void(int object, int rows)> begins;  ///< a quad, of which so many rows of rays are followed
+    std::function<void(int object, int rows)> begins;  ///< a quad begins, with this number of rows of rays
     std::function<void()> row_done;                    ///< from any thread
 };
 
-/// Immutable, thread-safe. The same for any number of threads.
+/// Immutable, thread-safe. The maps are the same for any number of threads.
 class Shadowgraph {
   public:
-    /// light_rays: 2 kRaysPerTexel … kMostLightRays. scene.light must be set. FrameError: cancelled.
-    Shadowgraph(const Scene& scene, const Geometry& geometry, const AirInstant& field, const TraceSettings& trace,
-                int light_rays, Cancelled cancelled = nullptr, const LightWatch& watch = {});
+    /// light_rays: 2 kRaysPerTexel … kMostLightRays. scene.light must be set. FrameError once a stop is requested.
+    Shadowgraph(const Scene& scene, const Geometry& geometry, const SceneAir& air, const AirInstant& field,
+                const TraceSettings& trace, int light_rays, const std::stop_token& stop = {},
+                const LightWatch& watch = {});
 
-    /// Irradiance over that of the unobstructed sun at a hit: nothing for objects that have no map.
+    /// Irradiance at a hit, divided by that of the unobstructed sun. Nothing for objects without a map.
     std::optional<double> irradiance(const Hit& hit) const;
 
   private:
     struct Map {
-        int object = 0, side = 0;   ///< texels a side
+        int object = 0, side = 0;   ///< side: texels along a side
         std::vector<float> values;  ///< row by row of v
         double at(double u, double v) const;
     };

@@ -8,19 +8,20 @@
 namespace eikonal::reference {
 namespace {
 
-/// Halvings of a chord that cuts what its curve passes; beyond, the chord's hit is as good.
+/// The most halvings of a chord that cuts what its curve passes. After them the chord's hit is exact enough.
 constexpr int kMostHalvings = 12;
 
-/// Part of a straight step at which its line has come to a surface.
+/// The part of a straight step at which its line meets a surface.
 double straight_part(const Step& step, const Hit& hit) {
     return glm::dot(hit.point - step.from.x, step.from.p) / (step.h * glm::dot(step.from.p, step.from.p));
 }
 
 }  // namespace
 
-/// How much longer [m] the chord may become along a piece of this curvature [1/m]: the larger root of two bounds of how
-/// far it leaves the curve, which is angle (distance at the chord's middle) + width at most,
-///     (β + κd)(l + d)/4,      max κ (l + d)²/8.
+/// How much longer [m] the chord may become along a piece of this curvature [1/m]. Two bounds of its deviation from the
+/// curve are known, for a chord that becomes longer by d:
+///     (β + κd)(l + d)/4,      max κ (l + d)²/8
+/// The deviation may be at most angle times the distance at the chord's middle, plus width. The larger root counts.
 double SurfaceSearch::room(double curvature) const {
     const double at_start = distance_ - chord_length_, angle = deviation_.angle;
     const double largest = std::max(chord_curvature_, curvature), here = angle * at_start + deviation_.width;
@@ -71,7 +72,7 @@ std::optional<SurfaceSearch::Met> SurfaceSearch::close(double until) {
     const dvec3 end = position(until);
     if (chord_length_ > 0)
         if (auto met = test({chord_start_, until, chord_from_, end}, distance_ - chord_length_ - start_, 0)) return met;
-    // Pieces that are done with go.
+    // Drop the pieces that no chord needs any more.
     const int last = std::min(static_cast<int>(until), count_);
     std::move(pieces_.begin() + last, pieces_.begin() + count_, pieces_.begin());
     count_ -= last;
@@ -90,7 +91,7 @@ dvec3 SurfaceSearch::position(double place) const {
     return piece(index).position(place - index);
 }
 
-/// Place on the curve that is `way` metres from `from`, as if every piece ran evenly along its chord.
+/// The place on the curve that is `way` [m] beyond `from`, if every piece ran evenly along its chord.
 double SurfaceSearch::place_after(double from, double until, double way) const {
     for (double start = from;;) {
         const double end = std::min(until, piece_of(start) + 1.0),
@@ -102,7 +103,7 @@ double SurfaceSearch::place_after(double from, double until, double way) const {
     }
 }
 
-/// travelled: from the ray's start to the chord's, where it may begin earlier by half of that.
+/// travelled: length of path from the ray's start to the chord's. The chord may begin earlier by half of it.
 std::optional<SurfaceSearch::Met> SurfaceSearch::test(const Chord& chord, double travelled, int depth) const {
     const auto& [from, until, a, b] = chord;
     const double length = glm::length(b - a);
@@ -125,8 +126,8 @@ std::optional<SurfaceSearch::Met> SurfaceSearch::test(const Chord& chord, double
     return test({middle, until, between, b}, travelled + glm::length(between - a), depth + 1);
 }
 
-/// Place on the curve where it passes through the tangent plane at `hit`: from `guess` on by Newton's method, else by
-/// Illinois' form of regula falsi.
+/// The place where the curve passes through the tangent plane at `hit`, by Newton's method from `guess`, or else by the
+/// Illinois form of regula falsi.
 double SurfaceSearch::plane_root(double from, double until, double guess, const Hit& hit) const {
     int current = -1;
     double start = 0;
@@ -141,7 +142,7 @@ double SurfaceSearch::plane_root(double from, double until, double guess, const 
         const double t = place - current;
         return start + t * (along[0] + t * (along[1] + t * (along[2] + t * (along[3] + t * along[4]))));
     };
-    // Pieces may be of any lengths: first the one that passes through it, if several do that by the guess.
+    // Pieces may have any lengths. First find the piece that passes through the plane, near the guess if several do.
     double a = from, b = until, ga = 0, gb = 0, off = std::numeric_limits<double>::infinity();
     const double g_from = height(from);
     double start_of = from, g_start = g_from;
@@ -179,7 +180,7 @@ double SurfaceSearch::plane_root(double from, double until, double guess, const 
     return std::abs(ga) < std::abs(gb) ? a : b;
 }
 
-/// back: how far the surface may lie before the chord; distance: about that of the hit from the camera.
+/// back: how far before the chord the surface may lie. distance: about the distance of the hit from the camera.
 std::optional<SurfaceSearch::Met> SurfaceSearch::refine(double from, double until, double guess, double back,
                                                         double distance, const Hit& chord_hit) const {
     const dvec3 start = position(from);
@@ -191,7 +192,7 @@ std::optional<SurfaceSearch::Met> SurfaceSearch::refine(double from, double unti
         const int index = piece_of(place);
         const Step& step = piece(index);
         const dvec3 x = step.position(place - index), d = glm::normalize(step.direction(place - index));
-        // Shot at again along the tangent, from before the point to beyond it by all that may be wrong.
+        // Test again along the tangent, from before the point to beyond it by all possible errors.
         if (i == 0) reach = 2 * glm::length(x - hit.point) + kFloatSlack * (1 + 4 * distance);
         const double before = std::min(reach, glm::length(x - start) + back);
         const auto again = geometry_->intersect(x - before * d, d, 0, before + reach);
@@ -201,7 +202,7 @@ std::optional<SurfaceSearch::Met> SurfaceSearch::refine(double from, double unti
         if (const double part = step.straight ? straight_part(step, hit) : -1; part >= 0 && part <= 1)
             return Met{hit, step, part};
         const double off = std::abs(hit.t - before);
-        // A tangent as long as `off` leaves the curve by its square.
+        // A tangent of length `off` deviates from the curve by the square of `off`.
         if (off <= 1e-12 * (1 + distance)) return Met{hit, step, place - index};
     }
     return {};

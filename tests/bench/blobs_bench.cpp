@@ -1,13 +1,14 @@
 /// Displacement map of one 1080p frame through hot blobs, in memory: does its time follow the screen area that blobs
 /// cover? Wall-clock time on all processors. Blobs of one size stand at random in the middle part of the picture, at
 /// many depths, in front of a wall; `covered` is the part of the picture's pixels that they move, `discs` the sum of
-/// what each covers alone, in pictures: the work. Plot: noise/blob_cost.gp.
+/// what each covers alone, in pictures: the work. Plot: noise/blobs/blob_cost.gp.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 #include <string>
 
 #include "noise/blobs/blobs.h"
+#include "noise/blobs/blobs_spec.h"
 #include "noise/math/random.h"
 #include "warp/displace/displacer.h"
 #include "warp/displace/media/blobs/seen_blobs.h"

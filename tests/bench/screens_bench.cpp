@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "noise/turbulence/gradient_noise/gradient_noise.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "noise/turbulence/screens/screens.h"
 
 namespace {

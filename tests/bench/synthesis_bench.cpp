@@ -13,6 +13,7 @@
 
 #include "noise/turbulence/lattice/lattice.h"
 #include "noise/turbulence/lattice/lattice_instant.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
@@ -88,14 +89,14 @@ void BM_SpectrumAt(benchmark::State& state) {
 }
 BENCHMARK(BM_SpectrumAt)->Arg(1)->Arg(5000)->Unit(benchmark::kMillisecond);
 
-void BM_Snapshot(benchmark::State& state) {
+void BM_Instant(benchmark::State& state) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     TurbulenceSpec spec;
     spec.alpha = 1;
     const LatticeField field(spec, {{64, 64, 64, 32}, {2, 2, 2, 4}});
     for (auto _ : state) benchmark::DoNotOptimize(LatticeInstant(field, 1.0).upper_bound());
 }
-BENCHMARK(BM_Snapshot)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Instant)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace eikonal

@@ -10,8 +10,13 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/medium_spec.h"
+#include "noise/surface/surface_spec.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "reference/trace/bent_ray.h"
 #include "reference/trace/render.h"
+#include "warp/scene/background.h"
 
 namespace {
 
@@ -102,7 +107,7 @@ struct Case {
         scene.media = {medium(kind)};
         const double f_px = kPixels * CameraPath(scene.camera, kWidth, kHeight).reference().f_px;
         air = std::make_unique<SceneAir>(scene, RaySettings{.integrator = integrator, .tolerance_px = tolerance_px},
-                                         RayEnds{far_distance(scene), tolerance_px / f_px, true});
+                                         RayEnds{far_of_scene(scene), tolerance_px / f_px, true});
         field = std::make_unique<AirInstant>(air->at(scene.time.first_frame));
         const Camera camera = air->path().reference();
         geometry = std::make_unique<Geometry>(scene, camera.position);

@@ -1,12 +1,13 @@
 // Growth of displacement with path length (PHYSICS.md#first-order), as CSV: rms of x1 of the exact spectral tables,
-// expected and realised, and of the paper's single table c·u. Rebuilds noise/growth.png with noise/growth.gp
-// (noise/README.md).
+// expected and realised, and of the paper's single table c·u. Rebuilds noise/turbulence/lattice/growth.png with
+// noise/turbulence/lattice/growth.gp (noise/README.md).
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "noise/turbulence/lattice/lattice.h"
 #include "noise/turbulence/lattice/path_tables.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 int main() {
     using namespace eikonal;

@@ -1,6 +1,6 @@
 // What accuracy costs the tracer, as CSV: for samples' scenes and each tolerance, the processor time of a ray and the
-// largest error of its displacement, against the finest tolerance. Rebuilds reference/tolerance.png with
-// reference/tolerance.gp (reference/README.md).
+// largest error of its displacement, against the finest tolerance. Rebuilds reference/trace/tolerance.png with
+// reference/trace/tolerance.gp (reference/README.md).
 //
 // Rays are those of a grid of pixels' centres, traced one after the other; times are medians of kRuns runs. Rays that
 // see another object than at the finest tolerance, past an edge, have no common displacement and are left out.
@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "reference/trace/render.h"
+#include "warp/scene/background.h"
 
 int main(int argc, char** argv) {
     using namespace eikonal;
@@ -39,7 +40,7 @@ int main(int argc, char** argv) {
             }
         const auto follow = [&](double tolerance) {
             TraceSettings trace = air.trace_settings(camera);
-            trace.sight = far_distance(scene);
+            trace.sight = far_of_scene(scene);
             trace.tolerance_px = tolerance;
             std::vector<BentHit> ends;
             for (const CameraRay& ray : rays)

@@ -1,6 +1,6 @@
-// The reference for lattice fields: the trigonometric sum itself, term by term, in double precision and with the C
-// library's sine. Shares nothing with the library but the spectrum's layout. Nyquist modes are cosines in the index and
-// absent from what bends light.
+/// The reference for lattice fields: the trigonometric sum itself, term by term, in double precision and with the C
+/// library's sine. It shares only the spectrum's layout with the library. Nyquist modes are cosines in the index, and
+/// they bend no light.
 #pragma once
 
 #include <complex>
@@ -17,7 +17,7 @@ class TrigonometricSum {
     TrigonometricSum(const FftVector<complex32>& spectrum, const LatticeGeometry& geometry)
         : spectrum_(spectrum.begin(), spectrum.end()), g_(geometry) {}
 
-    /// What bends light, and its gradient.
+    /// The n that bends light, and its gradient.
     IndexSample sample(const dvec3& x) const { return sum(x, false); }
     /// n - n_ambient, every mode counted.
     double index(const dvec3& x) const { return sum(x, true).n; }
@@ -55,7 +55,7 @@ class TrigonometricSum {
     LatticeGeometry g_;
 };
 
-/// Plain forward transform, nx × ny × nz, axis by axis.
+/// A plain forward transform, nx × ny × nz, axis by axis.
 inline std::vector<std::complex<double>> forward_transform(std::span<const float> samples, const LatticeGeometry& g) {
     std::vector<std::complex<double>> data(samples.begin(), samples.end());
     std::size_t stride = data.size();

@@ -2,16 +2,15 @@
 # Same bytes on every x86-64 processor: runs `eikonal` on emulated processors, from one without AVX to the newest that
 # qemu knows, and on the real one, and compares the files.
 #
-#     apt-get install qemu-user
-#     tests/cpu_test.sh build/warp/eikonal [CPU...]       (qemu's names; without: Nehalem Haswell max)
+#     tests/programs/cpu_test.sh build/warp/eikonal [CPU...]       (qemu's names; without: Nehalem Haswell max)
 #
-# Not a ctest: it needs qemu-x86_64 and takes some minutes. Exit status 0: all files agree.
+# Not a ctest: it needs qemu-x86_64 (Debian's qemu-user) and takes some minutes. Exit status 0: all files agree.
 set -eu
 
 eikonal=$(realpath "${1:?usage: cpu_test.sh PATH/TO/eikonal [CPU...]}")
 shift
 [ $# -gt 0 ] || set -- Nehalem Haswell max
-qemu=$(command -v qemu-x86_64) || { echo "cpu_test: qemu-x86_64 is missing; apt-get install qemu-user" >&2; exit 2; }
+qemu=$(command -v qemu-x86_64) || { echo "cpu_test: qemu-x86_64 is missing: install Debian's qemu-user" >&2; exit 2; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT INT TERM
 cd "$folder"

@@ -1,3 +1,4 @@
+// How the tests of the programs run them: processes, folders, pictures.
 #include "tests/programs/program_run.h"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 /// Black-box tests of `eikonal-trace`: exit statuses, one-line messages that name what is wrong, and what it writes.
+/// Length: all commands of one program, on the scenes and files that they share.
 #include <gtest/gtest.h>
 
 #include <chrono>

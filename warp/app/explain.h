@@ -8,13 +8,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
-#include "warp/app/shot.h"
+#include "warp/resample/resample.h"
+#include "warp/shimmer/footage_shot.h"
 
 namespace eikonal {
-
-inline constexpr int kExplainRows = 64;  ///< of the picture, resampled
 
 /// What the explained command would do with the maps.
 struct ExplainedRun {
@@ -30,6 +30,6 @@ struct ExplainedRun {
 };
 
 /// Prints it on stdout. FrameError if the first frame's depth cannot be read.
-void explain(const Shot& shot, const ExplainedRun& run);
+void explain(const FootageShot& shot, const ExplainedRun& run);
 
 }  // namespace eikonal

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "noise/base/error.h"
-#include "warp/app/depth_input.h"
+#include "warp/shimmer/depth_input.h"
 
 namespace eikonal {
 namespace {

@@ -1,18 +1,14 @@
 /// eikonal: adds physically computed heat shimmer to footage. Declare options, validate, run, report.
 
-#include <fmt/format.h>
 #include <malloc.h>
 
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 
-#include "noise/base/error.h"
 #include "warp/app/commands.h"
-#include "warp/app/pipeline.h"
-#include "warp/app/shot.h"
-#include "warp/image/interrupt.h"
-#include "warp/scene/scene_place.h"
+#include "warp/app/shot_options.h"
+#include "warp/program/exit_status.h"
+#include "warp/program/interrupt.h"
 
 namespace {
 
@@ -22,47 +18,35 @@ void keep_freed_memory() {
     mallopt(M_TRIM_THRESHOLD, -1);
 }
 
-/// Runs a command; messages on its scene come to name file and line.
+/// The scene that a command reads; null for those that read none.
 template <class Options>
-int run_command(const Options& options) {
-    using namespace eikonal;
-    try {
-        return run(options);
-    } catch (const UserError& error) {
-        if constexpr (requires { options.scene.settings; })
-            throw UserError(with_place(error.what(), scene_file_of(options.scene), options.scene.settings));
-        throw;
-    }
+const eikonal::SceneOptions* scene_of(const Options& options) {
+    if constexpr (requires { options.shot.scene; }) return &options.shot.scene;
+    if constexpr (requires { options.scene; }) return &options.scene;
+    return nullptr;
 }
 
-int run_program(int argc, char** argv) {
+int run_command(const eikonal::Command& command, const std::stop_token& stop) {
     using namespace eikonal;
-    constexpr int kFrameFailed = 1, kWrongUsage = 2;
-    try {
-        catch_interrupts("eikonal");
-        return std::visit([](const auto& options) { return run_command(options); }, parse_options(argc, argv));
-    } catch (const UserError& error) {
-        fmt::print(stderr, "eikonal: {}\n", error.what());
-        return kWrongUsage;
-    } catch (const FrameError& error) {
-        const bool cut_short = error.what() == kInterrupted;  // before the first frame
-        fmt::print(stderr, "eikonal: {}{}\n", error.what(), cut_short ? "; the same command makes the rest" : "");
-        return kFrameFailed;
-    } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "eikonal: not enough memory; fewer --threads or smaller pictures need less\n");
-        return kFrameFailed;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "eikonal: internal error, please report it: {}\n", error.what());
-        return kFrameFailed;
-    }
+    return std::visit(
+        [&](const auto& options) {
+            const SceneOptions* scene = scene_of(options);
+            if (scene == nullptr) return run(options, stop);
+            return with_scene_places(scene_file_of(*scene), scene->settings, [&] { return run(options, stop); });
+        },
+        command);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    using namespace eikonal;
+    const Interrupts interrupts("eikonal");
     keep_freed_memory();
-    const int status = run_program(argc, argv);
+    const ProgramWords words{"eikonal", "fewer --threads or smaller pictures need less",
+                             "the same command makes the rest"};
+    const int status = exit_status(words, [&] { return run_command(parse_options(argc, argv), interrupts.token()); });
     // Everything of ours is closed. The global destructors of some 250 libraries would only delay the prompt.
     const bool written = std::fflush(nullptr) == 0;
-    std::_Exit(status == 0 && !written ? 1 : status);
+    std::_Exit(status == 0 && !written ? kFrameFailed : status);
 }

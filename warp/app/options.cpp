@@ -9,8 +9,8 @@
 
 #include "noise/base/error.h"
 #include "warp/app/help_format.h"
+#include "warp/app/option_errors.h"
 #include "warp/scene/background.h"
-#include "warp/scene/message.h"
 
 namespace eikonal {
 namespace {
@@ -70,13 +70,6 @@ std::string joined(const Names<T>& names) {
     std::string text;
     for (const auto& [name, value] : names) text += (text.empty() ? "" : "|") + name;
     return text;
-}
-
-std::string suggestion(std::string_view word, const std::vector<std::string>& valid,
-                       const std::string& otherwise = "") {
-    const std::vector<std::string_view> views(valid.begin(), valid.end());
-    const std::string meant = scene_file::did_you_mean(word, views);
-    return meant.empty() ? otherwise : meant;
 }
 
 /// An option whose value is one of a list of names.
@@ -178,20 +171,47 @@ void add_scene(CLI::App& app, SceneOptions& o) {
 
 const std::string kLengths = fmt::format("from {:g} to {:g} m", kSmallestPositive, kLargestValue);
 
-void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
+double part_of_ground(const std::string& all, std::string_view text) {
+    const std::optional<double> value = parse_number(text);
+    if (!value)
+        throw UserError(fmt::format(
+            "--ground: '{}' must be HEIGHT,HORIZON: metres above the ground, and the horizon's row from the top in "
+            "pixels or as a part of the height like 55%",
+            all));
+    return *value;
+}
+
+GroundSettings parse_ground(const std::string& text) {
+    const auto comma = text.find(',');
+    if (comma == std::string::npos) part_of_ground(text, "?");
+    std::string_view horizon = std::string_view(text).substr(comma + 1);
+    const bool fraction = horizon.ends_with('%');
+    if (fraction) horizon.remove_suffix(1);
+    GroundSettings ground{part_of_ground(text, std::string_view(text).substr(0, comma)), part_of_ground(text, horizon),
+                          fraction};
+    if (!fraction && ground.horizon > 0 && ground.horizon < 1)
+        throw UserError(fmt::format("--ground: the horizon's row {0} is within the first pixel; did you mean {1:g}%?",
+                                    horizon, ground.horizon * 100));
+    if (fraction) ground.horizon /= 100;
+    return ground;
+}
+
+void add_depth(CLI::App& app, DepthSettings& o, bool with_input) {
     begin_group(app, "Depth");
     add_number(app, "--distance", o.distance, "M", "constant distance along the axis [m]", kLengths, is_length);
     app.add_option("--depth", o.depth,
                    std::string("depth map; 0 m, infinity and NaN are background") +
                        (with_input ? "; :CHANNEL alone names a channel of INPUT" : ""))
         ->type_name("FILE[:CHANNEL]");
-    add_choice(app, "--depth-type", o.type, kDepthTypes, "metres along the axis (default), along the ray, or 1/metres");
+    add_choice(app, "--depth-type", o.depth_type, kDepthTypes,
+               "metres along the axis (default), along the ray, or 1/metres");
     app.add_option_function<std::string>(
-           "--depth-range", [&o](const std::string& text) { o.range = pair_of("--depth-range", text); },
+           "--depth-range", [&o](const std::string& text) { o.depth_range = pair_of("--depth-range", text); },
            "metres that codes 0 and 1 of a map without units mean (inverse: 1 is NEAR)")
         ->type_name("NEAR,FAR");
-    app.add_option("--ground", o.ground,
-                   "flat ground: camera height [m] and the horizon's row from the top, in pixels or as 55%")
+    app.add_option_function<std::string>(
+           "--ground", [&o](const std::string& text) { o.ground = parse_ground(text); },
+           "flat ground: camera height [m] and the horizon's row from the top, in pixels or as 55%")
         ->type_name("HEIGHT,HORIZON");
     add_number(
         app, "--far", o.far, "M",
@@ -199,14 +219,15 @@ void add_depth(CLI::App& app, DepthArguments& o, bool with_input) {
             "distance of the background (default: the scene's, else {:g}, or {:g} over surfaces alone); limits depth",
             kDefaultFar, kDefaultSky),
         kLengths, is_length);
-    add_choice(app, "--depth-meeting", o.meeting, kMeetings,
+    add_choice(app, "--depth-meeting", o.depth_meeting, kMeetings,
                "how a bent ray meets the depth map: followed to the first surface (default), iterated, or the pixel's "
                "own depth");
 }
 
-void add_strength(CLI::App& app, StrengthOptions& o) {
+void add_strength(CLI::App& app, ShotOptions& shot, std::optional<std::filesystem::path>& stmap) {
     begin_group(app, "Displacement");
-    app.add_option("--mask", o.mask, "matte that scales the displacement, 0 … 1")->type_name("FILE[:CHANNEL]");
+    StrengthSettings& o = shot.strength;
+    app.add_option("--mask", shot.mask, "matte that scales the displacement, 0 … 1")->type_name("FILE[:CHANNEL]");
     add_number(app, "--rms", o.rms, "PX", "scale the displacement to this rms at --far, fixed over the shot",
                "0 or more", not_negative);
     add_number(app, "--gain", o.gain, "X", "multiply the displacement (second-order: the air's strength)", "0 or more",
@@ -218,7 +239,7 @@ void add_strength(CLI::App& app, StrengthOptions& o) {
                            "--model auto unless a model is named",
                            kDefaultTolerance),
                "more than 0", positive);
-    app.add_option("--stmap", o.stmap, "also write the map as STMap (Nuke, Blender)")->type_name("FILE");
+    app.add_option("--stmap", stmap, "also write the map as STMap (Nuke, Blender)")->type_name("FILE");
 }
 
 void add_run(CLI::App& app, RunOptions& o) {
@@ -240,9 +261,9 @@ void add_warp(CLI::App& app, WarpOptions& o) {
     begin_group(app, "Files");
     app.add_option("INPUT", o.input, "image, sequence or movie")->required();
     app.add_option("-o,--output", o.output, "image, sequence or movie")->required()->type_name("OUTPUT");
-    add_scene(app, o.scene);
-    add_depth(app, o.depth, true);
-    add_strength(app, o.strength);
+    add_scene(app, o.shot.scene);
+    add_depth(app, o.shot.depth, true);
+    add_strength(app, o.shot, o.stmap);
     app.add_option("--displacement", o.displacement, "also write the map as channels u, v in pixels")
         ->type_name("FILE");
     begin_group(app, "Picture");
@@ -264,9 +285,9 @@ void add_map(CLI::App& app, MapOptions& o) {
     app.add_option("-o,--output", o.output, "displacement map (EXR, channels u and v in pixels)")
         ->required()
         ->type_name("OUTPUT");
-    add_scene(app, o.scene);
-    add_depth(app, o.depth, false);
-    add_strength(app, o.strength);
+    add_scene(app, o.shot.scene);
+    add_depth(app, o.shot.depth, false);
+    add_strength(app, o.shot, o.stmap);
     add_run(app, o.run);
 }
 
@@ -294,39 +315,7 @@ void add_field(CLI::App& app, FieldOptions& o) {
         app.remove_option(app.get_option(name));
 }
 
-/// One line from CLI11's own error, with the nearest valid name for a misspelt option or command.
-[[noreturn]] void rephrase(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words) {
-    const CLI::App* at = &app;
-    for (const CLI::App* sub : app.get_subcommands()) at = sub;
-    std::vector<std::string> valid;
-    for (const CLI::Option* option : at->get_options())
-        for (const auto& name : option->get_lnames()) valid.push_back("--" + name);
-    std::vector<std::string> commands;
-    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-        commands.push_back(sub->get_name());
-    if (at == &app && (words.empty() || words.front().rfind('-', 0) != 0)) {
-        if (words.empty()) throw UserError(fmt::format("no command given; one of {}", fmt::join(commands, ", ")));
-        throw UserError(fmt::format("'{}' is no command; one of {}{}", words.front(), fmt::join(commands, ", "),
-                                    suggestion(words.front(), commands)));
-    }
-    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
-        for (const std::string& word : at->remaining(true)) {
-            const std::string name = word.substr(0, word.find('='));
-            if (name.rfind("--", 0) == 0)
-                throw UserError(fmt::format("{}: '{}' has no such option{}", name, at->get_name(),
-                                            suggestion(name, valid, "; see --help")));
-            throw UserError(fmt::format("'{}': too many arguments for '{}'; see --help", word, at->get_name()));
-        }
-    std::string text = error.what();
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
-        text = text.substr(0, text.find(':')) + (text.find("At Most") != std::string::npos
-                                                     ? ": is given more than once; give it once"
-                                                     : ": its value is missing");
-    throw UserError(fmt::format("{}; see 'eikonal {} --help'", text, at == &app ? "" : at->get_name()));
-}
-
-void check(DepthArguments& o) {
+void check(const DepthSettings& o) {
     int sources = 0;
     std::string given;
     for (const auto& [name, is] :
@@ -337,8 +326,8 @@ void check(DepthArguments& o) {
             given += fmt::format("{}{}", given.empty() ? "" : " and ", name);
         }
     if (sources > 1) throw UserError(given + " contradict each other; give one of them");
-    if (o.range && !o.depth) throw UserError("--depth-range: needs a --depth map");
-    if (o.type && !o.depth) throw UserError("--depth-type: needs a --depth map");
+    if (o.depth_range && !o.depth) throw UserError("--depth-range: needs a --depth map");
+    if (o.depth_type && !o.depth) throw UserError("--depth-type: needs a --depth map");
 }
 
 }  // namespace
@@ -384,7 +373,7 @@ Command parse_options(int argc, const char* const* argv) {
         rephrase(error, app, words);
     }
     if (app.got_subcommand("warp")) {
-        check(warp.depth);
+        check(warp.shot.depth);
         if (warp.shutter > 0 && warp_command->count("--samples") == 0)
             warp.samples = 9;  // odd: the middle one is the frame's own
         if (warp.shutter == 0 && warp.samples > 1)
@@ -392,7 +381,7 @@ Command parse_options(int argc, const char* const* argv) {
         return warp;
     }
     if (app.got_subcommand("map")) {
-        check(map.depth);
+        check(map.shot.depth);
         return map;
     }
     if (app.got_subcommand("field")) return field;

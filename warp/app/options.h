@@ -2,7 +2,6 @@
 /// any file. Defaults are those of an omitted option.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,10 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "warp/displace/depth/depth_meeting.h"
-#include "warp/displace/displacer.h"
-#include "warp/image/depth_map.h"
 #include "warp/resample/resample.h"
+#include "warp/shimmer/settings.h"
 
 namespace eikonal {
 
@@ -29,34 +26,12 @@ struct SceneOptions {
     std::optional<double> fov;
 };
 
-/// Where the picture's objects are. At most one of distance, depth and ground.
-struct DepthArguments {
-    std::optional<double> distance;
-    std::optional<std::string> depth;  ///< FILE[:CHANNEL] or :CHANNEL
-    std::optional<DepthType> type;     ///< left out: z
-    std::optional<std::array<double, 2>> range;
-    std::optional<std::string> ground;  ///< HEIGHT,HORIZON
-    std::optional<double> far;
-    std::optional<DepthMeeting> meeting;  ///< left out: march
-};
-
-/// --model: a model for every medium that it suits; left out: each medium's default.
-struct ModelRequest {
-    bool automatic = false;  ///< the cheapest within the tolerance
-    std::optional<Model> model;
-};
-
-/// Largest p95 of the displacement's error that `--model auto` allows, if no --tolerance is given [px].
-inline constexpr double kDefaultTolerance = 0.1;
-
-/// How strong, by which model, and what is written beside the picture.
-struct StrengthOptions {
+/// The shot: what the displacement is made of.
+struct ShotOptions {
+    SceneOptions scene;
+    DepthSettings depth;
+    StrengthSettings strength;
     std::optional<std::string> mask;  ///< FILE[:CHANNEL]
-    std::optional<double> rms;
-    double gain = 1;
-    ModelRequest model;
-    std::optional<double> tolerance;  ///< [px]
-    std::optional<std::filesystem::path> stmap;
 };
 
 /// How the work is done.
@@ -76,11 +51,9 @@ struct RunOptions {
 
 struct WarpOptions {
     std::filesystem::path input, output;
-    SceneOptions scene;
-    DepthArguments depth;
-    StrengthOptions strength;
+    ShotOptions shot;
     RunOptions run;
-    std::optional<std::filesystem::path> displacement;
+    std::optional<std::filesystem::path> stmap, displacement;
     Filter filter = Filter::Cubic;
     Edge edge = Edge::Mirror;
     double shutter = 0;
@@ -92,10 +65,9 @@ struct WarpOptions {
 
 struct MapOptions {
     std::filesystem::path output;
-    SceneOptions scene;
-    DepthArguments depth;
-    StrengthOptions strength;
+    ShotOptions shot;
     RunOptions run;
+    std::optional<std::filesystem::path> stmap;
 };
 
 struct FieldOptions {

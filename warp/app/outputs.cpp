@@ -9,7 +9,6 @@
 
 #include "noise/base/error.h"
 #include "warp/displace/grid/model.h"
-#include "warp/image/interrupt.h"
 #include "warp/image/movie_writer.h"
 #include "warp/image/picture.h"
 
@@ -112,7 +111,8 @@ void Outputs::check(const std::vector<int>& frames, const std::vector<NamedFiles
     for (const Output& output : outputs_) claim_all(output, true);
 }
 
-std::size_t Outputs::keep_finished(std::vector<int>& frames, const PixelWindow& display) const {
+std::size_t Outputs::keep_finished(std::vector<int>& frames, const PixelWindow& display,
+                                   const std::stop_token& stop) const {
     struct Found {
         bool finished = true;
         fs::path damaged;  ///< the first such file
@@ -139,7 +139,7 @@ std::size_t Outputs::keep_finished(std::vector<int>& frames, const PixelWindow& 
     };
     std::vector<Found> found(frames.size());
     tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
-        check_cancelled(interrupted);
+        check_stop(stop);
         found[i] = look(frames[i]);
     });
     for (const Found& each : found)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,7 @@ class Outputs {
     /// Takes from `frames` those whose files are all there and whole, tells on stderr that they are kept, and returns
     /// how many they are. Damaged files are told, too: their frames are to be made anew. UserError: a whole picture of
     /// another size than `display`, which may be precious.
-    std::size_t keep_finished(std::vector<int>& frames, const PixelWindow& display) const;
+    std::size_t keep_finished(std::vector<int>& frames, const PixelWindow& display, const std::stop_token& stop) const;
     /// Whether the movie under -o is there and whole, which is told on stderr as above. UserError: another size, or
     /// another number of frames than `asked`.
     bool keep_movie(const PixelWindow& display, const AskedFrames& asked) const;

@@ -1,7 +1,6 @@
 #include "warp/app/pipeline.h"
 
 #include <fmt/format.h>
-#include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -14,8 +13,7 @@
 #include "noise/base/memory.h"
 #include "warp/app/progress.h"
 #include "warp/displace/displacer.h"
-#include "warp/image/interrupt.h"
-#include "warp/image/picture.h"
+#include "warp/program/option_names.h"
 
 namespace eikonal {
 namespace {
@@ -26,9 +24,9 @@ void guarded(FrameRecord& record, Stage&& stage) {
     try {
         stage();
     } catch (const FrameError& error) {
-        record.error = error.what();
+        record.error = with_options(error.what());
     } catch (const UserError& error) {
-        record.error = error.what();
+        record.error = with_options(error.what());
     } catch (const std::bad_alloc&) {
         record.error = "not enough memory";
     } catch (const std::exception& error) {
@@ -43,14 +41,8 @@ bool RunResult::failed() const {
            std::any_of(records.begin(), records.end(), [](const FrameRecord& r) { return !r.error.empty(); });
 }
 
-ThreadLimit::ThreadLimit(const RunOptions& options)
-    : threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()),
-      control_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_)) {
-    set_image_threads(threads_);
-}
-
 RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads,
-                       double frame_bytes) {
+                       double frame_bytes, const std::stop_token& stop) {
     const auto memory = static_cast<double>(memory_limit());
     if (frame_bytes > memory)
         throw UserError(
@@ -60,10 +52,10 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
         static_cast<std::size_t>(std::clamp(memory / std::max(frame_bytes, 1.0), 1.0, double(threads + kFramesAhead)));
     RunResult result;
     Progress progress(options.progress, total, total == 1 ? "frame" : "frames");
-    std::atomic<bool> stop{false}, cut_short{false};
+    std::atomic<bool> enough{false}, cut_short{false};
     const auto take = [&](tbb::flow_control& flow) -> FrameItem* {
-        if (interrupted()) cut_short = true;
-        if (stop || cut_short) {
+        if (stop.stop_requested()) cut_short = true;
+        if (enough || cut_short) {
             flow.stop();
             return nullptr;
         }
@@ -76,7 +68,7 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
             item->following = stages.failing();
             item->record.frame = item->following.front();
             item->following.erase(item->following.begin());
-            if (!options.skip_bad_frames) stop = true;
+            if (!options.skip_bad_frames) enough = true;
         }
         if (!item) flow.stop();
         return item.release();
@@ -87,11 +79,11 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
         if (item->record.error.empty())
             tbb::this_task_arena::isolate([&] {
                 guarded(item->record, [&] {
-                    check_cancelled(interrupted);
+                    check_stop(stop);
                     stages.work(*item);
                 });
             });
-        if (!item->record.error.empty() && !options.skip_bad_frames) stop = true;
+        if (!item->record.error.empty() && !options.skip_bad_frames) enough = true;
         item->record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return item;
     };
@@ -100,14 +92,15 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
     const auto finish = [&](FrameItem* raw) {
         const std::unique_ptr<FrameItem> item(raw);
         FrameRecord& record = item->record;
-        if (interrupted() && record.error == kInterrupted) {
+        if (stop.stop_requested() && record.error == kStopped) {
             cut_short = true;
             return;
         }
         for (const Remark& remark : record.remarks) {
             if (!told.insert(remark.about).second || !(remark.warning || options.verbose)) continue;
-            progress.line(fmt::format("eikonal: {}{}", remark.warning ? "warning: " : "", remark.text));
-            if (remark.warning) result.warnings.push_back(remark.text);
+            const std::string text = with_options(remark.text);
+            progress.line(fmt::format("eikonal: {}{}", remark.warning ? "warning: " : "", text));
+            if (remark.warning) result.warnings.push_back(text);
         }
         const bool lost = broken && record.error.empty() && stages.in_one_file;
         if (lost)
@@ -119,7 +112,7 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
                                           ? fmt::format("frame {}", record.frame)
                                           : fmt::format("frames {}-{}", record.frame, item->following.back());
             progress.line(fmt::format("eikonal: {}: {}", which, record.error));
-            if (!options.skip_bad_frames) stop = broken = true;
+            if (!options.skip_bad_frames) enough = broken = true;
         }
         result.records.push_back(record);
         progress.step(record.error.empty());

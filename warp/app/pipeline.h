@@ -3,19 +3,19 @@
 /// fewer where they are so large that memory_limit() does not hold them.
 ///
 /// A frame that fails is reported as "frame F: reason" and the others go on or, unless skip_bad_frames, no more are
-/// begun. An interrupt ends the run and gives up the frames under way. Nothing already finished is lost either way.
+/// begun. A requested stop ends the run and gives up the frames under way. Nothing already finished is lost either way.
 #pragma once
-
-#include <tbb/global_control.h>
 
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "warp/app/options.h"
+#include "warp/displace/displacer.h"
 #include "warp/image/plane.h"
 
 namespace eikonal {
@@ -31,9 +31,6 @@ struct FrameRecord {
     double seconds = 0;           ///< of work
     std::vector<Remark> remarks;  ///< on its files
 };
-
-/// The error of a frame that was given up because the user has interrupted the run.
-inline constexpr std::string_view kInterrupted = "interrupted";
 
 struct RunResult {
     std::vector<FrameRecord> records;  ///< in order
@@ -62,20 +59,9 @@ struct Stages {
 
 /// frame_bytes: of memory that one frame takes on its way, about. UserError: more than there is.
 RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads,
-                       double frame_bytes);
+                       double frame_bytes, const std::stop_token& stop);
 
 /// Tells on stderr how a run ended that did not make all frames. `rest`: what becomes of them.
 void print_outcome(const RunResult& result, const RunOptions& options, std::size_t total, const std::string& rest);
-
-/// While it lives, oneTBB and the image library use as many threads as the options say: --threads or all processors.
-class ThreadLimit {
-  public:
-    explicit ThreadLimit(const RunOptions& options);
-    int threads() const { return threads_; }
-
-  private:
-    int threads_;
-    tbb::global_control control_;
-};
 
 }  // namespace eikonal

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "warp/app/shot_options.h"
 #include "warp/displace/stated_error.h"
 #include "warp/image/atomic_file.h"
+#include "warp/program/option_names.h"
 
 namespace eikonal {
 namespace {
@@ -42,10 +44,27 @@ nlohmann::ordered_json choice_json(const ModelChoice& choice) {
         if (tried.refusal.empty())
             entry["p95_px"] = tried.p95;
         else
-            entry["refusal"] = tried.refusal;
+            entry["refusal"] = with_options(tried.refusal);
         json["tried"].push_back(std::move(entry));
     }
     return json;
+}
+
+nlohmann::ordered_json frame_json(const FrameRecord& r) {
+    nlohmann::ordered_json frame{{"frame", r.frame}, {"status", r.error.empty() ? "written" : "failed"}};
+    if (r.error.empty()) {
+        frame["rms_px"] = r.rms;
+        frame["largest_px"] = r.largest;
+        if (r.stated)
+            frame["stated_error_px"] = {{"p50", r.stated->p50},
+                                        {"p95", r.stated->p95},
+                                        {"max", r.stated->largest},
+                                        {"samples", r.stated->samples}};
+    } else {
+        frame["error"] = r.error;
+    }
+    frame["seconds"] = r.seconds;
+    return frame;
 }
 
 }  // namespace
@@ -63,40 +82,34 @@ void tell_errors(const Shot& shot, RunResult& result, bool verbose) {
     }
 }
 
-void write_report(const std::filesystem::path& file, const Shot& shot, const RunResult& result, std::size_t kept) {
+int conclude(const FootageShot& shot, const RunOptions& options, const RunSummary& summary, RunResult& result) {
+    tell_errors(shot.shot(), result, options.verbose);
+    if (options.report) write_report(*options.report, shot, summary, result);
+    print_outcome(result, options, summary.total, summary.rest);
+    return result.failed() ? 1 : 0;
+}
+
+void write_report(const std::filesystem::path& file, const FootageShot& footage_shot, const RunSummary& summary,
+                  const RunResult& result) {
+    const Shot& shot = footage_shot.shot();
     nlohmann::ordered_json json;
     json["version"] = EIKONAL_VERSION;
     json["scene"] = shot.scene().file.string();
     json["models"] = shot.displacer().models();
     json["gain"] = shot.gain();
     json["expected_rms_px"] = shot.expected_rms();
-    json["far_m"] = shot.depth().far();
+    json["far_m"] = shot.background().far;
     json["focusing_variance"] = shot.focusing_variance();
     json["fps"] = shot.fps();
-    json["notes"] = shot.notes();
-    json["warnings"] = shot.warnings();
+    json["notes"] = with_options(footage_shot.notes());
+    json["warnings"] = summary.warnings;
     for (const std::string& warning : result.warnings) json["warnings"].push_back(warning);
     if (shot.tolerance()) json["tolerance_px"] = *shot.tolerance();
     if (shot.choice() != nullptr) json["model_choice"] = choice_json(*shot.choice());
     json["interrupted"] = result.interrupted;
-    json["frames_kept"] = kept;
-    auto& frames = json["frames"] = nlohmann::ordered_json::array();
-    for (const FrameRecord& r : result.records) {
-        nlohmann::ordered_json frame{{"frame", r.frame}, {"status", r.error.empty() ? "written" : "failed"}};
-        if (r.error.empty()) {
-            frame["rms_px"] = r.rms;
-            frame["largest_px"] = r.largest;
-            if (r.stated)
-                frame["stated_error_px"] = {{"p50", r.stated->p50},
-                                            {"p95", r.stated->p95},
-                                            {"max", r.stated->largest},
-                                            {"samples", r.stated->samples}};
-        } else {
-            frame["error"] = r.error;
-        }
-        frame["seconds"] = r.seconds;
-        frames.push_back(std::move(frame));
-    }
+    json["frames_kept"] = summary.kept;
+    json["frames"] = nlohmann::ordered_json::array();
+    for (const FrameRecord& record : result.records) json["frames"].push_back(frame_json(record));
     write_text_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 

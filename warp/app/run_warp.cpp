@@ -8,12 +8,16 @@
 #include "warp/app/commands.h"
 #include "warp/app/explain.h"
 #include "warp/app/footage.h"
+#include "warp/app/map_files.h"
 #include "warp/app/outputs.h"
 #include "warp/app/pipeline.h"
 #include "warp/app/report.h"
-#include "warp/app/shot.h"
+#include "warp/app/shot_options.h"
 #include "warp/image/movie_reader.h"
 #include "warp/image/movie_writer.h"
+#include "warp/program/option_names.h"
+#include "warp/program/thread_limit.h"
+#include "warp/shimmer/warp_plate.h"
 
 namespace eikonal {
 namespace {
@@ -75,23 +79,17 @@ int frame_of_still(const WarpOptions& options, int first_frame, std::string& not
     return named->after_dot ? named->number : first_frame;
 }
 
-/// Instants of a shutter that is centred on the frame.
-std::vector<double> shutter_offsets(const WarpOptions& options) {
-    std::vector<double> offsets;
-    for (int i = 0; i < options.samples; ++i) offsets.push_back(options.shutter * ((i + 0.5) / options.samples - 0.5));
-    return offsets;
-}
-
 class WarpRun {
   public:
-    WarpRun(const WarpOptions& options, const Footage& footage, const Shot& shot, const Outputs& outputs,
-            std::vector<int> frames)
+    WarpRun(const WarpOptions& options, const Footage& footage, const FootageShot& shot, const Outputs& outputs,
+            std::vector<int> frames, std::stop_token stop)
         : options_(options),
           footage_(footage),
           shot_(shot),
           outputs_(outputs),
           frames_(std::move(frames)),
-          offsets_(shutter_offsets(options)),
+          offsets_(shutter_offsets(options.shutter, options.samples)),
+          stop_(std::move(stop)),
           output_(*outputs.find("-o")) {
         if (footage.kind == FootageKind::Movie) {
             reader_.emplace(options.input);
@@ -151,8 +149,8 @@ class WarpRun {
                 "'{}' is {} x {}, but the shot is {} x {}; all frames of a shot must have one size", file.string(),
                 display.width, display.height, footage_.display.width, footage_.display.height));
         const auto* picture = std::get_if<Picture>(&item.plate);
-        const Shot::Maps made = shot_.maps(frame, offsets_, picture, picture != nullptr ? file : options_.input,
-                                           plate_window(item.plate), item.record.remarks);
+        const FrameInput input{picture, picture != nullptr ? file : options_.input, {}};
+        const Shot::Maps made = shot_.maps(frame, offsets_, input, plate_window(item.plate), item.record.remarks);
         item.record.stated = made.error;
         const std::vector<DisplacementMap>& maps = made.of_instants;
         const DisplacementMap& middle = maps[maps.size() / 2];
@@ -165,7 +163,7 @@ class WarpRun {
         if (const NamedFiles* displacement = outputs_.find("--displacement"))
             write_displacement(displacement->at(frame), middle, display);
         if (const std::size_t strange =
-                warp_plate(item.plate, maps, {options_.filter, options_.edge, options_.dispersion}))
+                warp_plate(item.plate, maps, {options_.filter, options_.edge, options_.dispersion, stop_}))
             item.record.remarks.push_back(
                 {"plate_finite",
                  fmt::format("'{}': {} colour values are NaN or infinite; where the air moves them, NaN "
@@ -210,7 +208,9 @@ class WarpRun {
         MovieSettings settings;
         settings.codec = options_.codec;
         settings.quality = options_.quality;
-        settings.warn = [](const std::string& text) { fmt::print(stderr, "eikonal: warning: {}\n", text); };
+        settings.warn = [](const std::string& text) {
+            fmt::print(stderr, "eikonal: warning: {}\n", with_options(text));
+        };
         const std::filesystem::path& file = output_.files.text();
         if (reader_) {
             if (options_.run.frames) settings.frames = frames_;
@@ -219,17 +219,18 @@ class WarpRun {
         }
         movie_format_ = sequence_format(file, footage_.display.width, footage_.display.height, footage_.source_bits,
                                         footage_.pixel_aspect, options_.codec);
-        Rational fps{static_cast<std::int64_t>(shot_.fps() * 1000 + 0.5), 1000};
-        if (footage_.fps && !shot_.scene().time.fps) fps = *footage_.fps;
+        Rational fps{static_cast<std::int64_t>(shot_.shot().fps() * 1000 + 0.5), 1000};
+        if (footage_.fps && !shot_.shot().scene().time.fps) fps = *footage_.fps;
         writer_.emplace(file, *movie_format_, fps, settings);
     }
 
     const WarpOptions& options_;
     const Footage& footage_;
-    const Shot& shot_;
+    const FootageShot& shot_;
     const Outputs& outputs_;
     std::vector<int> frames_;
     std::vector<double> offsets_;
+    std::stop_token stop_;
     const NamedFiles& output_;
     std::optional<MovieReader> reader_;
     std::optional<MovieWriter> writer_;
@@ -240,31 +241,32 @@ class WarpRun {
 };
 
 /// Finds wrong options of depth and matte before the first frame is begun.
-void try_companions(const Footage& footage, const Shot& shot, int frame) {
+void try_companions(const Footage& footage, const FootageShot& shot, int frame) {
     const std::filesystem::path file = footage.files.at(frame);
-    if (footage.kind == FootageKind::Movie) return shot.try_companions(frame, nullptr, file, footage.display);
+    if (footage.kind == FootageKind::Movie) return shot.try_companions(frame, {nullptr, file, {}}, footage.display);
     try {
-        const Plate plate = shot.depth().inside_input() ? read_picture(file) : read_picture_header(file);
-        shot.try_companions(frame, &std::get<Picture>(plate), file, plate_window(plate));
+        const Plate plate = shot.depth().inside_picture() ? read_picture(file) : read_picture_header(file);
+        shot.try_companions(frame, {&std::get<Picture>(plate), file, {}}, plate_window(plate));
     } catch (const FrameError&) {
         // the frame's own trouble, told when its turn comes
     }
 }
 
 /// Memory that a frame takes on its way, about [bytes].
-double bytes_of_frame(const WarpOptions& options, const Footage& footage, const Shot& shot) {
-    return shot.frame_bytes(kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
+double bytes_of_frame(const WarpOptions& options, const Footage& footage, const FootageShot& shot) {
+    return shot.shot().frame_bytes(kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
 }
 
-RunResult warp_frames(const WarpOptions& options, const Footage& footage, const Shot& shot, const Outputs& outputs,
-                      const std::vector<int>& frames, int threads) {
+RunResult warp_frames(const WarpOptions& options, const Footage& footage, const FootageShot& shot,
+                      const Outputs& outputs, const std::vector<int>& frames, int threads,
+                      const std::stop_token& stop) {
     try_companions(footage, shot, frames.empty() ? 1 : frames.front());
-    WarpRun warp(options, footage, shot, outputs, frames);
+    WarpRun warp(options, footage, shot, outputs, frames, stop);
     const Stages stages{[&] { return warp.take(); }, [&] { return warp.failing(); },
                         [&](FrameItem& item) { warp.work(item); }, [&](FrameItem& item) { warp.finish(item); },
                         footage_kind(options.output) == FootageKind::Movie};
     RunResult result =
-        run_pipeline(stages, options.run, frames.size(), threads, bytes_of_frame(options, footage, shot));
+        run_pipeline(stages, options.run, frames.size(), threads, bytes_of_frame(options, footage, shot), stop);
     if (!result.interrupted && (options.run.skip_bad_frames || !result.failed())) warp.close();
     return result;
 }
@@ -277,63 +279,99 @@ AskedFrames asked_of_movie(const WarpOptions& options, const Footage& footage, c
     return {found ? static_cast<std::size_t>(*found) : frames.size(), counted || found, options.run.skip_bad_frames};
 }
 
-}  // namespace
-
-int run(const WarpOptions& options) {
-    const ThreadLimit limit(options.run);
-
-    Scene scene = load_scene(options.scene);
+Outputs warp_outputs(const WarpOptions& options) {
     Outputs outputs;
     outputs.add("-o", options.output, OutputKind::Pictures);
-    if (options.strength.stmap) outputs.add("--stmap", *options.strength.stmap, OutputKind::Maps);
+    if (options.stmap) outputs.add("--stmap", *options.stmap, OutputKind::Maps);
     if (options.displacement) outputs.add("--displacement", *options.displacement, OutputKind::Maps);
     if (options.run.report) outputs.add("--report", *options.run.report, OutputKind::Report);
-    const bool to_movie = outputs.find("-o")->single;
-    if (!to_movie && (!options.codec.empty() || options.quality))
+    if (!outputs.find("-o")->single && (!options.codec.empty() || options.quality))
         throw UserError(fmt::format("{}: is for movies, but '{}' is none; leave it out or name a .mov",
                                     options.codec.empty() ? "--quality" : "--codec", options.output.string()));
+    return outputs;
+}
+
+/// The footage and the frames of it to warp.
+struct Take {
+    Footage footage;
+    std::vector<int> frames;
+    bool hole = false;  ///< frames are missing between them
+};
+
+/// Looks for the footage, and tells on stderr what is odd about it.
+Take find_take(const WarpOptions& options, int first_frame) {
     const std::vector<int> wanted = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{};
     std::string notice;
-    const int still = frame_of_still(options, scene.time.first_frame, notice);
-    const Footage footage = find_footage(options.input, wanted, still);
+    const int still = frame_of_still(options, first_frame, notice);
+    Take take;
+    take.footage = find_footage(options.input, wanted, still);
     if (!notice.empty()) fmt::print(stderr, "eikonal: {}\n", notice);
-    for (const std::string& note : footage.notes) fmt::print(stderr, "eikonal: warning: {}\n", note);
-    bool hole = false;
-    std::vector<int> frames = choose_frames(options, footage, wanted, still, hole);
-    Shot shot(
-        std::move(scene), options.scene, options.depth, options.strength, footage.display, footage.pixel_aspect,
-        footage.fps ? std::optional(footage.fps->value()) : std::nullopt, [&] { return pixels_of(footage); },
-        options.run.states_errors());
-    std::vector<NamedFiles> inputs = shot.companions();
+    for (const std::string& note : take.footage.notes) fmt::print(stderr, "eikonal: warning: {}\n", note);
+    take.frames = choose_frames(options, take.footage, wanted, still, take.hole);
+    return take;
+}
+
+FootageShotSettings warp_settings(const WarpOptions& options, const Footage& footage, const std::stop_token& stop) {
+    FootageShotSettings settings = shot_settings(options.shot, options.run, stop);
+    settings.view.display = footage.display;
+    settings.view.pixel_aspect = footage.pixel_aspect;
+    if (footage.fps) settings.view.fps = footage.fps->value();
+    settings.view.overscan = [&] { return pixels_of(footage); };
+    return settings;
+}
+
+ExplainedRun explained(const WarpOptions& options, const FootageShot& shot, const Take& take, int first,
+                       std::size_t kept, int threads) {
+    const Footage& footage = take.footage;
+    const bool pictures = footage.kind != FootageKind::Movie;
+    return {footage.display,
+            take.frames,
+            first,
+            pictures ? footage.files.at(first) : std::filesystem::path(),
+            kept,
+            threads,
+            bytes_of_frame(options, footage, shot),
+            options.filter,
+            options.samples};
+}
+
+}  // namespace
+
+int run(const WarpOptions& options, const std::stop_token& stop) {
+    const ThreadLimit limit(options.run.threads);
+
+    Scene scene = load_scene(options.shot.scene);
+    const Outputs outputs = warp_outputs(options);
+    const bool to_movie = outputs.find("-o")->single;
+    Take take = find_take(options, scene.time.first_frame);
+    const Footage& footage = take.footage;
+    std::vector<int>& frames = take.frames;
+    const FootageShot shot(std::move(scene), warp_settings(options, footage, stop));
+    std::vector<NamedFiles> inputs = companions(shot);
     inputs.push_back({"the input", footage.files, footage.kind == FootageKind::Movie});
     outputs.check(frames, inputs);
-    shot.tell(frames, options.run.verbose);
+    RunSummary summary{announce(shot, frames, options.run.verbose), 0, 0,
+                       to_movie ? "the movie was not written" : "the same command makes the rest"};
 
-    const int first = frames.empty() ? shot.scene().time.first_frame : frames.front();
-    std::size_t kept = 0;
+    const int first = frames.empty() ? shot.shot().scene().time.first_frame : frames.front();
     if (!options.run.overwrite) {
-        if (to_movie) {
-            if (!options.run.explain && outputs.keep_movie(footage.display, asked_of_movie(options, footage, frames)))
-                return hole ? 1 : 0;
-        } else {
-            kept = outputs.keep_finished(frames, footage.display);
-        }
+        if (!to_movie)
+            summary.kept = outputs.keep_finished(frames, footage.display, stop);
+        else if (!options.run.explain && outputs.keep_movie(footage.display, asked_of_movie(options, footage, frames)))
+            return take.hole ? 1 : 0;
     }
     if (options.run.explain) {
-        const bool pictures = footage.kind != FootageKind::Movie;
-        explain(shot, {footage.display, frames, first, pictures ? footage.files.at(first) : std::filesystem::path(),
-                       kept, limit.threads(), bytes_of_frame(options, footage, shot), options.filter, options.samples});
+        explain(shot, explained(options, shot, take, first, summary.kept, limit.threads()));
         return 0;
     }
     if (!options.run.skip_bad_frames)
         if (const auto missing = shot.missing_companion(frames)) throw FrameError(*missing);
     RunResult result;
-    if (kept == 0 || !frames.empty()) result = warp_frames(options, footage, shot, outputs, frames, limit.threads());
-    tell_errors(shot, result, options.run.verbose);
-    if (options.run.report) write_report(*options.run.report, shot, result, kept);
-    print_outcome(result, options.run, frames.size(),
-                  to_movie ? "the movie was not written" : "the same command makes the rest");
-    return result.failed() || hole ? 1 : 0;
+    if (summary.kept == 0 || !frames.empty())
+        result = warp_frames(options, footage, shot, outputs, frames, limit.threads(), stop);
+    summary.total = frames.size();
+    const int status = conclude(shot, options.run, summary, result);
+    return take.hole ? 1 : status;
 }
 
 }  // namespace eikonal

@@ -7,6 +7,8 @@
 #include <variant>
 
 #include "noise/base/error.h"
+#include "noise/medium/medium_spec.h"
+#include "noise/surface/surface_spec.h"
 #include "warp/displace/grid/ray_frame.h"
 #include "warp/displace/stated_error.h"
 #include "warp/pixels/depth_range.h"
@@ -25,14 +27,13 @@ std::vector<double> choice_frames(const Scene& scene, const DisplacerSettings& s
 DepthPlane ground_before(const Camera& camera, const Scene& scene, const PixelWindow& window, double distance) {
     std::vector<float> metres(window.area(), static_cast<float>(distance));
     for (const MediumSpec& medium : scene.media) {
-        const auto* surface = std::get_if<SurfaceSpec>(&medium);
-        if (surface == nullptr) continue;
-        const dvec3 normal = glm::normalize(surface->normal);
+        const std::optional<GroundPlane> ground = medium.mirage_ground(scene.optics);
+        if (!ground) continue;
         auto z = metres.begin();
         for (int y = window.y0; y < window.y0 + window.height; ++y)
             for (int x = window.x0; x < window.x0 + window.width; ++x, ++z) {
                 const StraightRay ray = straight_ray(camera, x + 0.5, y + 0.5);
-                const double way = -glm::dot(ray.origin - surface->origin, normal) / glm::dot(ray.direction, normal);
+                const double way = -ground->height(ray.origin) / glm::dot(ray.direction, ground->normal);
                 if (way > kNearestDepth && way < double{*z}) *z = static_cast<float>(way);
             }
     }
@@ -112,7 +113,7 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
         try {
             p95 = sampled_p95(*displacer, scene, settings, depths, gain);
         } catch (const FrameError& refusal) {
-            check_cancelled(settings.cancelled);
+            check_stop(settings.stop);
             choice.tried.push_back({model, refusal.what()});
             continue;
         }

@@ -6,31 +6,22 @@
 /// Instant::map fills a window of pixels. Frame F depends on the scene, its settings and F alone: not on other frames,
 /// threads, or the window asked for.
 ///
-/// Every medium is handled by the model that suits it (layers.h), and their displacements add. Gain multiplies them,
-/// but for mirages: those are geometry, and [optics] exaggeration makes more of them.
+/// Every medium is handled by the model that suits it (warp/displace/shot_media.h), and their displacements add. Gain
+/// multiplies them, but for mirages: those are geometry, and [optics] exaggeration makes more of them.
 #pragma once
 
 #include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "warp/displace/depth/depth_meeting.h"
+#include "warp/displace/depth/depth_source.h"
 #include "warp/displace/grid/model.h"
+#include "warp/displace/stated_error.h"
 #include "warp/scene/camera.h"
 #include "warp/scene/scene.h"
 
 namespace eikonal {
-
-/// Where each pixel's object is: one axial distance for all [m], or a plane of them.
-using DepthSource = std::variant<double, const DepthPlane*>;
-
-/// What a map is off by, as its own samples say (stated_error.h) [px].
-/// Infinite where the rays that would tell are lost.
-struct StatedError {
-    int samples = 0;
-    double p50 = 0, p95 = 0, largest = 0;
-};
 
 class Displacer {
   public:
@@ -43,7 +34,7 @@ class Displacer {
     class Instant {
       public:
         /// Displacement of every pixel of `window` into `uv`: window.area() interleaved pairs. Tiles in parallel.
-        /// Finite for every finite depth > 0. FrameError once the settings' `cancelled` says so, and if a pixel would
+        /// Finite for every finite depth > 0. FrameError once the settings' `stop` is requested, and if a pixel would
         /// move by more than kLargestShift.
         void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, float* uv) const;
 
@@ -86,6 +77,8 @@ class Displacer {
     const std::vector<std::string>& notes() const;
     /// One line each: what the user should know of (folding rays, paths beyond a lattice period).
     const std::vector<std::string>& warnings() const;
+    /// The same of the air itself, which matters only where displacement is shown at all.
+    const std::vector<std::string>& air_warnings() const;
     /// One line each on what does not hold for objects as far as `farthest` [m], beyond the settings' far; none if it
     /// is not beyond.
     std::vector<std::string> beyond_far(double farthest) const;

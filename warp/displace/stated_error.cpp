@@ -8,6 +8,8 @@
 #include <functional>
 #include <iterator>
 
+#include "warp/displace/depth/depth_plane.h"
+
 namespace eikonal {
 namespace {
 
@@ -18,8 +20,8 @@ double fraction(double x) {
     return x - std::floor(x);
 }
 
-/// Sorts runs of equal parts of `pixels`, so that every step of a walk through them goes on in depth and back and forth
-/// in strength.
+/// Sorts pixels into classes of depth of equal size, and these in turn by ascending and descending displacement. So
+/// depth and displacement change little from one pixel to the next.
 void stratify(std::vector<SamplePixel>& pixels) {
     const auto strength = [](const SamplePixel& p) { return p.map.x * p.map.x + p.map.y * p.map.y; };
     std::stable_sort(pixels.begin(), pixels.end(),
@@ -34,13 +36,13 @@ void stratify(std::vector<SamplePixel>& pixels) {
     }
 }
 
-/// How near an edge counts for a pixel.
+/// Distance from an edge up to which a pixel is beside it [px].
 int edge_reach(const SamplePixel& p) {
     const float most = std::max(std::abs(p.map.x), std::abs(p.map.y));
     return std::clamp(static_cast<int>(std::ceil(std::min<float>(most, kFarthestEdge))), kEdgeReach, kFarthestEdge);
 }
 
-/// Leaves out the pixels beside an edge; all stay if fewer than `least` would.
+/// Removes the pixels beside an edge, unless fewer than `least` would stay.
 void keep_smooth(std::vector<SamplePixel>& pixels, const DepthPlane& depth, std::size_t least) {
     int reach = 0;
     for (const SamplePixel& p : pixels) reach = std::max(reach, edge_reach(p));

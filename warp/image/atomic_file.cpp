@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kMark = ".eikonal-";
-constexpr std::size_t kLongestName = 255;  ///< bytes of a file name on every common file system
+constexpr std::size_t kLongestName = 255;  ///< bytes of a file name that every common file system allows
 
 /// This host's name, reduced to letters, digits and underscores.
 const std::string& host() {
@@ -48,7 +48,7 @@ fs::path temporary_name(const fs::path& final_path) {
     return final_path.parent_path() / ("." + stem + tail);
 }
 
-/// The process that made the temporary `name`, or 0 if it is none of this host's.
+/// The process that made the temporary file `name`, or 0 if no process of this host did.
 pid_t owner(std::string_view name) {
     const std::size_t mark = name.rfind(kMark);
     if (name.empty() || name.front() != '.' || mark == std::string_view::npos) return 0;
@@ -62,7 +62,7 @@ pid_t owner(std::string_view name) {
     return whole && pid > 0 ? pid : 0;
 }
 
-/// Clears `folder` the first time this process writes into it.
+/// Removes stale temporary files when this process first writes into `folder`.
 void clear_once(const fs::path& folder) {
     static std::mutex mutex;
     static std::set<fs::path> cleared;

@@ -72,7 +72,7 @@ Name split(const std::string& full) {
     return {full.substr(0, dot), lower(std::string_view(full).substr(dot + 1))};
 }
 
-/// Place of a colour channel in its group: R, G, B, then the others; -1 if the name is none of a colour.
+/// Place of a colour channel in its group: R, G, B, then the others. -1 if the name is not that of a colour.
 int colour_rank(const std::string& channel, bool layer_has_x) {
     if (channel == "r" || channel == "red") return 0;
     if (channel == "g" || channel == "green") return 1;
@@ -85,6 +85,30 @@ int colour_rank(const std::string& channel, bool layer_has_x) {
 bool wide_integer(TypeDesc type) {
     return type.basetype == TypeDesc::UINT32 || type.basetype == TypeDesc::INT32 || type.basetype == TypeDesc::UINT64 ||
            type.basetype == TypeDesc::INT64;
+}
+
+/// The colour channels of one layer, and its alpha.
+struct Layer {
+    struct Member {
+        int rank;
+        int channel;
+    };
+    std::vector<Member> colours;
+    int alpha = -1;
+};
+
+/// Appends the groups of a layer: its colours, sorted by rank, three at a time. A layer of alpha alone is one group.
+void add_groups(const std::string& name, Layer& layer, std::vector<ChannelGroup>& groups) {
+    std::stable_sort(layer.colours.begin(), layer.colours.end(),
+                     [](const Layer::Member& a, const Layer::Member& b) { return a.rank < b.rank; });
+    for (std::size_t first = 0; first == 0 || first < layer.colours.size(); first += 3) {
+        ChannelGroup group;
+        group.layer = name;
+        group.alpha = layer.alpha;
+        for (std::size_t i = first; i < std::min(first + 3, layer.colours.size()); ++i)
+            group.channel[static_cast<std::size_t>(group.count++)] = layer.colours[i].channel;
+        groups.push_back(group);
+    }
 }
 
 }  // namespace
@@ -103,16 +127,8 @@ void classify_channels(Part& part, std::string_view format) {
         if (names[c].channel == "x") has_x[names[c].layer] = true;
     }
 
-    struct Member {
-        int rank;
-        int channel;
-    };
-    struct Layer {
-        std::vector<Member> colours;
-        int alpha = -1;
-    };
     std::map<std::string, Layer> layers;
-    std::vector<std::string> order;  // of first appearance
+    std::vector<std::string> order;  // the layers in the order of their first appearance
 
     part.kinds.assign(count, ChannelKind::Data);
     for (std::size_t c = 0; c < count; ++c) {
@@ -141,19 +157,7 @@ void classify_channels(Part& part, std::string_view format) {
     }
 
     part.groups.clear();
-    for (const std::string& name : order) {
-        Layer& layer = layers[name];
-        std::stable_sort(layer.colours.begin(), layer.colours.end(),
-                         [](const Member& a, const Member& b) { return a.rank < b.rank; });
-        for (std::size_t first = 0; first == 0 || first < layer.colours.size(); first += 3) {
-            ChannelGroup group;
-            group.layer = name;
-            group.alpha = layer.alpha;
-            for (std::size_t i = first; i < std::min(first + 3, layer.colours.size()); ++i)
-                group.channel[static_cast<std::size_t>(group.count++)] = layer.colours[i].channel;
-            part.groups.push_back(group);
-        }
-    }
+    for (const std::string& name : order) add_groups(name, layers[name], part.groups);
     // The main layer first.
     std::stable_partition(part.groups.begin(), part.groups.end(),
                           [](const ChannelGroup& group) { return group.layer.empty(); });
@@ -167,7 +171,8 @@ Transfer transfer_of(const OIIO::ImageSpec& spec, std::string_view format) {
     if (starts("lin") || starts("scenelin") || starts("aces") || space == "raw" || space == "data")
         return Transfer::Linear;
     if (starts("srgb")) return Transfer::SRGB;
-    const bool linear_floats = format == "pnm" && spec.format.is_floating_point();  // PFM, which is called Rec709 too
+    const bool linear_floats =
+        format == "pnm" && spec.format.is_floating_point();  // PFM, which OpenImageIO calls Rec709
     if ((starts("rec709") || starts("bt709")) && !linear_floats) return Transfer::BT709;
     if (starts("kodaklog") || starts("cineon")) return Transfer::KodakLog;
     if (starts("adobergb")) return Transfer::Gamma22;

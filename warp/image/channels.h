@@ -1,30 +1,34 @@
-/// Which channels of a part are colour, alpha or data, and which belong together.
+/// Which channels of a part are colour, alpha or data, and which ones form a group.
 ///
-/// The rule, first match wins (names are split at the last dot into layer and channel; words inside a layer's name are
-/// separated by punctuation or by capitals, "uCryptoObject" -> u crypto object; case does not matter):
-///   1. 32-bit integer channels, and the depth channel the file names, are data.
-///   2. A layer named by cryptomatte metadata, or with a data word in its name (kDataWords in channels.cpp: depth,
-///      normal, position, motion, uv, id, crypto, mask, matte …; the letters N, P, Z alone), is data, alpha included.
-///      Channels without a layer take their part's name for one.
-///   3. A, alpha, or the channel the file calls alpha: alpha of its layer.
-///   4. R, G, B, red, green, blue, and Y, luminance, I, gray, grey in a layer that has no X channel: colour. So are all
-///      channels of integer pictures outside EXR, which name them otherwise (palettes, CMYK as delivered), but not more
-///      than four of them.
-///   5. Everything else (Z, X, U, object_id, mask …) is data: what is not known to be colour is never filtered.
+/// The first rule that matches decides. A name is split at the last dot into layer and channel. Words of a layer's name
+/// are separated by punctuation or by capitals: "uCryptoObject" is u, crypto, object. Case does not matter.
+///   1. Data: 32-bit integer channels, and the channel that the file names as depth.
+///   2. Data, including alpha: a layer named by cryptomatte metadata, or with a data word in its name. The words are
+///      kDataWords in channels.cpp: depth, normal, position, motion, uv, id, crypto, mask, matte …, and the letters N,
+///      P, Z alone. A channel without a layer takes the name of its part as its layer.
+///   3. Alpha of its layer: A, alpha, or the channel that the file names as alpha.
+///   4. Colour: R, G, B, red, green, blue. In a layer without a channel X also Y, luminance, I, gray and grey. In
+///   integer
+///      pictures other than EXR with at most four channels, all other channels (palettes, CMYK as delivered).
+///   5. Data: everything else (Z, X, U, object_id, mask …). A channel that is not known to be colour is never filtered.
 #pragma once
 
 #include "warp/image/picture.h"
 
 namespace eikonal {
 
-/// Fills part.kinds and part.groups from part.spec. `format` is OpenImageIO's name of the file format.
+/// Fills part.kinds and part.groups from part.spec. format: OpenImageIO's name of the file format.
 void classify_channels(Part& part, std::string_view format);
 
-/// The transfer that the metadata and the pixel type of a picture mean.
-/// oiio:ColorSpace linear, scene_linear, ACES…: Linear; sRGB: SRGB; Rec709: BT709; KodakLog, Cineon: KodakLog;
-/// GammaX.Y and GammaCorrected with oiio:Gamma: Linear near 1, else Gamma22, the nearest there is. Anything else:
-/// Linear for float types and SRGB for integers. format: OpenImageIO's name; the floats of PFM ("pnm") are linear,
-/// though it calls them Rec709.
+/// The transfer curve of a picture, by its attribute oiio:ColorSpace and its pixel type:
+///     linear, scene_linear, ACES…                            Linear
+///     sRGB                                                   SRGB
+///     Rec709                                                 BT709
+///     KodakLog, Cineon                                       KodakLog
+///     GammaX.Y, and GammaCorrected with oiio:Gamma           Linear near 1, else Gamma22 as the nearest curve
+///     anything else                                          Linear for float types, SRGB for integers
+/// format: OpenImageIO's name of the file format. Floats of PFM ("pnm") are linear, although OpenImageIO calls them
+/// Rec709.
 Transfer transfer_of(const OIIO::ImageSpec& spec, std::string_view format);
 
 }  // namespace eikonal

@@ -1,7 +1,7 @@
-/// A file being written whose every failure is remembered.
+/// A file that remembers every failure while it is written.
 ///
-/// Format libraries drop errors of their last writes (buffers flushed in destructors), so a full disk can pass for
-/// success. Everything they write goes through this proxy, whose finish() tells the truth.
+/// Format libraries ignore errors of their last writes, for example of buffers that a destructor flushes. A full disk
+/// can then pass for success. Everything that they write goes through this proxy, and its finish() reports any failure.
 #pragma once
 
 #include <OpenImageIO/filesystem.h>
@@ -11,16 +11,16 @@
 
 namespace eikonal {
 
-/// Buffered and seekable. One thread at a time.
+/// Buffered and seekable. Not thread-safe.
 class CheckedOutput final : public OIIO::Filesystem::IOProxy {
   public:
-    /// Creates the file. FrameError naming `shown` (the final name).
+    /// Creates the file. FrameError with the name `shown`, which is the final name.
     CheckedOutput(const std::filesystem::path& path, std::filesystem::path shown);
     CheckedOutput(const CheckedOutput&) = delete;
     CheckedOutput& operator=(const CheckedOutput&) = delete;
     ~CheckedOutput() override;
 
-    /// Writes what is buffered and closes. FrameError if this or anything before it failed.
+    /// Writes the buffer and closes the file. FrameError if this or any earlier operation failed.
     void finish();
 
     const char* proxytype() const override { return "checked"; }
@@ -35,9 +35,9 @@ class CheckedOutput final : public OIIO::Filesystem::IOProxy {
 
     std::filesystem::path shown_;
     int file_ = -1;
-    int failure_ = 0;  ///< errno of the first failure
+    int failure_ = 0;  ///< errno of the first failure, else 0
     std::vector<std::byte> buffer_;
-    int64_t buffer_at_ = 0;  ///< where in the file the buffer belongs
+    int64_t buffer_at_ = 0;  ///< place of the buffer in the file
     int64_t size_ = 0;
 };
 

@@ -1,4 +1,4 @@
-/// Reasons of failed file operations as one line.
+/// The reason why a file operation failed, as one line.
 #pragma once
 
 #include <cerrno>
@@ -8,7 +8,7 @@
 
 namespace eikonal {
 
-/// A library's message without line breaks; `fallback` if it is empty.
+/// A library's message without line breaks. `fallback` if the message is empty.
 inline std::string one_line(std::string_view message, std::string_view fallback) {
     std::string line;
     for (const char c : message) {
@@ -22,7 +22,7 @@ inline std::string one_line(std::string_view message, std::string_view fallback)
     return line.empty() ? std::string(fallback) : line;
 }
 
-/// What errno means.
+/// The text of errno.
 inline std::string last_system_error() {
     return std::strerror(errno);
 }

@@ -21,7 +21,7 @@ namespace eikonal::libav {
 namespace {
 
 constexpr std::int64_t kFar = std::int64_t{1} << 60;  ///< beyond any true time stamp
-constexpr int kFreeFrameSize = 1024;                  ///< samples a packet of encoders that take any number
+constexpr int kFreeFrameSize = 1024;                  ///< samples of a packet, for encoders that take any number
 
 struct ResamplerFreer {
     void operator()(SwrContext* context) const { swr_free(&context); }
@@ -30,7 +30,7 @@ struct FifoFreer {
     void operator()(AVAudioFifo* fifo) const { av_audio_fifo_free(fifo); }
 };
 
-/// Codecs that may stand in, best first.
+/// Codecs that may take the place of the source's, best first.
 std::vector<AVCodecID> wanted_codecs(const AVOutputFormat& container) {
     std::vector<AVCodecID> codecs;
     const AVCodecID own =
@@ -78,7 +78,7 @@ Codec open_encoder(const AVCodec& codec, const AVCodecContext& source, const AVC
     encoder->thread_count = 1;
     encoder->flags |= AV_CODEC_FLAG_BITEXACT;
     if (container.flags & AVFMT_GLOBALHEADER) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    // libav's own Opus counts as an experiment
+    // libav's own Opus encoder counts as experimental.
     if (codec.capabilities & AV_CODEC_CAP_EXPERIMENTAL) encoder->strict_std_compliance = FF_COMPLIANCE_EXPERIMENTAL;
     if (avcodec_open2(encoder.get(), &codec, nullptr) < 0) return nullptr;
     return encoder;
@@ -104,7 +104,7 @@ Codec open_decoder(const AVStream& from) {
     const AVCodec* codec = avcodec_find_decoder(from.codecpar->codec_id);
     Codec decoder(codec ? avcodec_alloc_context3(codec) : nullptr);
     if (!decoder || avcodec_parameters_to_context(decoder.get(), from.codecpar) < 0) return nullptr;
-    decoder->pkt_timebase = from.time_base;  // by which padding is cut off with its time
+    decoder->pkt_timebase = from.time_base;  // so that the decoder cuts off padding at the right time
     decoder->thread_count = 1;
     if (avcodec_open2(decoder.get(), codec, nullptr) < 0) return nullptr;
     return decoder;
@@ -123,7 +123,7 @@ bool holds_audio(const AVOutputFormat& container, AVCodecID codec) {
     if (name == "ogv" || name == "ogg")
         return any_of({AV_CODEC_ID_VORBIS, AV_CODEC_ID_OPUS, AV_CODEC_ID_FLAC, AV_CODEC_ID_SPEEX});
     if (name == "mxf") return any_of({AV_CODEC_ID_PCM_S16LE, AV_CODEC_ID_PCM_S24LE});
-    // tags that the QuickTime muxer knows, but refuses in .mov or takes for experiments
+    // The QuickTime muxer knows these tags, but it refuses them in .mov or takes them for experimental.
     if (name == "mp4" && any_of({AV_CODEC_ID_FLAC, AV_CODEC_ID_TRUEHD})) return false;
     if (name == "mov" && any_of({AV_CODEC_ID_FLAC, AV_CODEC_ID_TRUEHD, AV_CODEC_ID_OPUS})) return false;
     const int answer = avformat_query_codec(&container, codec, FF_COMPLIANCE_NORMAL);
@@ -138,11 +138,11 @@ struct AudioTranscoder::State {
     Frame decoded = make_frame(), input = make_frame();
     Packet packet = make_packet();
     std::int64_t origin = 0;    ///< [source's time base]
-    std::int64_t heard = 0;     ///< end of what went in, from time 0 [samples of the source]
-    std::int64_t next_pts = 0;  ///< of the next sample out of the fifo [samples of the encoder]
+    std::int64_t heard = 0;     ///< end of the sound that went in, from time 0 [samples of the source]
+    std::int64_t next_pts = 0;  ///< time of the next sample from the fifo [samples of the encoder]
     std::int64_t lead = 0;      ///< added to the packets' times
     bool placed = false;        ///< next_pts is known
-    int rate = 0;               ///< of what the resampler takes [1/s]
+    int rate = 0;               ///< rate of the sound that the resampler takes [1/s]
 
     bool start_resampler(const AVFrame& frame) {
         AVChannelLayout layout{};
@@ -166,7 +166,7 @@ struct AudioTranscoder::State {
                frame.ch_layout.nb_channels == input->ch_layout.nb_channels;
     }
 
-    /// Through the resampler into the fifo; data null: what it holds back.
+    /// Sends samples through the resampler into the fifo. Null data: the samples that the resampler holds back.
     int resample(const std::uint8_t** data, int count) {
         const int room = swr_get_out_samples(resampler.get(), count);
         if (room <= 0) return room;
@@ -183,7 +183,7 @@ struct AudioTranscoder::State {
 
     int flush_resampler() { return resampler ? resample(nullptr, 0) : 0; }
 
-    /// `count` samples of silence, of the kind of `like`.
+    /// Adds `count` samples of silence in the format of `like`.
     int fill(const AVFrame& like, std::int64_t count, const Emit& emit) {
         const Frame silence = make_frame();
         silence->format = like.format;
@@ -204,7 +204,7 @@ struct AudioTranscoder::State {
         return 0;
     }
 
-    /// Puts a decoded frame in its place.
+    /// Puts a decoded frame at its time.
     int place(const AVFrame& frame, const Emit& emit) {
         if (!resampler_fits(frame)) {
             if (const int flushed = flush_resampler(); flushed < 0) return flushed;
@@ -255,7 +255,7 @@ struct AudioTranscoder::State {
         }
     }
 
-    /// Codes whole frames of what the fifo holds; the rest too if it is the `last`.
+    /// Codes the whole frames that the fifo holds. last: code the rest too.
     int encode(bool last, const Emit& emit) {
         const int whole = encoder->frame_size > 0 ? encoder->frame_size : kFreeFrameSize;
         while (av_audio_fifo_size(fifo.get()) >= (last ? 1 : whole)) {
@@ -274,7 +274,7 @@ struct AudioTranscoder::State {
         return 0;
     }
 
-    /// Decodes a packet (null: the end) and codes what comes of it.
+    /// Decodes a packet and codes the result. Null: the end.
     int decode(const AVPacket* source, const Emit& emit) {
         avcodec_send_packet(decoder.get(), source);  // a damaged packet leaves a gap
         while (avcodec_receive_frame(decoder.get(), decoded.get()) >= 0) {
@@ -303,7 +303,7 @@ std::unique_ptr<AudioTranscoder> AudioTranscoder::open(const AVStream& from, con
         why = fmt::format("{} files hold no audio that libav can encode", container.name);
         return nullptr;
     }
-    // Matroska's times count from the start of the encoder's delay, which its files state apart
+    // Matroska's times count from the start of the encoder's delay, which its files state separately.
     const std::string_view name = container.name;
     if (name == "webm" || name == "matroska") state->lead = state->encoder->initial_padding;
     state->fifo.reset(av_audio_fifo_alloc(state->encoder->sample_fmt, state->encoder->ch_layout.nb_channels, 1));

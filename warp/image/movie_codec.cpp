@@ -16,7 +16,7 @@ namespace eikonal::libav {
 
 namespace {
 
-/// How an encoder is told its quality.
+/// The way in which an encoder takes its quality.
 enum class Quality { Crf, Quantiser, Profile, Lossless };
 
 struct KnownEncoder {
@@ -24,12 +24,12 @@ struct KnownEncoder {
     const char* name;
     Quality quality;
     double value;         ///< visually lossless crf or quantiser
-    double best, worst;   ///< range of that value; of Profile and Lossless, which have none, unused
+    double best, worst;   ///< range of that value. Unused for Profile and Lossless.
     const char* options;  ///< "key=value,key=value"
 };
 
-/// Every codec that we write. libx264 goes without mbtree, whose fast code reads memory that was never set, so that its
-/// bytes differ from run to run.
+/// Every codec that we write. libx264 works without mbtree. The fast code of mbtree reads memory that was never set, so
+/// its bytes differ from run to run.
 constexpr std::array kEncoders{
     KnownEncoder{AV_CODEC_ID_H264, "libx264", Quality::Crf, 15, 0, 51, "preset=fast,x264-params=mbtree=0"},
     KnownEncoder{AV_CODEC_ID_HEVC, "libx265", Quality::Crf, 15, 0, 51,
@@ -66,10 +66,10 @@ const KnownEncoder& find_named(const std::string& name) {
     std::string names;
     for (const KnownEncoder& known : kEncoders)
         names += std::string(names.empty() ? "" : ", ") + avcodec_get_name(known.codec);
-    throw UserError(fmt::format("--codec: '{}' is unknown; allowed: {}", name, names));
+    throw UserError(fmt::format("`codec`: '{}' is unknown; allowed: {}", name, names));
 }
 
-/// The encoder that the user names, if the container can hold its codec.
+/// The encoder that the user names. The container must be able to hold its codec.
 const KnownEncoder& find_allowed(const std::string& name, const AVOutputFormat* container,
                                  const std::filesystem::path& path) {
     const KnownEncoder& wanted = find_named(name);
@@ -81,23 +81,23 @@ const KnownEncoder& find_allowed(const std::string& name, const AVOutputFormat* 
     for (const char* other : {".mov", ".mkv"})
         if (accepts(av_guess_format(nullptr, other, nullptr), wanted.codec))
             others += (others.empty() ? "" : " or ") + std::string(other);
-    throw UserError(fmt::format("--codec {}: '{}' cannot hold it, {} holds {}; write {}", name, path.string(),
+    throw UserError(fmt::format("`codec` {}: '{}' cannot hold it, {} holds {}; write {}", name, path.string(),
                                 path.extension().string(), held, others));
 }
 
-/// UserError: a quality that the codec does not have.
+/// Throws UserError for a quality that the codec does not have.
 void check_quality(const KnownEncoder& known, const MovieSettings& settings) {
     if (!settings.quality) return;
     const char* name = avcodec_get_name(known.codec);
     if (known.best == known.worst)
-        throw UserError(fmt::format("--quality: {} {}; leave it out or name another --codec", name,
+        throw UserError(fmt::format("`quality`: {} {}; leave it out or name another `codec`", name,
                                     known.quality == Quality::Lossless ? "is lossless" : "has a quality of its own"));
     if (*settings.quality < std::min(known.best, known.worst) || *settings.quality > std::max(known.best, known.worst))
-        throw UserError(fmt::format("--quality: {:g} is none of {}, which takes {:g} (best) to {:g}", *settings.quality,
+        throw UserError(fmt::format("`quality`: {:g} is none of {}, which takes {:g} (best) to {:g}", *settings.quality,
                                     name, known.best, known.worst));
 }
 
-/// Candidates, best first.
+/// The encoders to try, best first.
 std::vector<const KnownEncoder*> candidates(const EncoderRequest& request, const MovieSettings& settings,
                                             const std::filesystem::path& path) {
     if (!settings.codec.empty()) return {&find_allowed(settings.codec, request.container, path)};
@@ -112,7 +112,8 @@ std::vector<const KnownEncoder*> candidates(const EncoderRequest& request, const
     for (const AVCodecID codec : {AV_CODEC_ID_H264, AV_CODEC_ID_VP9, AV_CODEC_ID_THEORA, AV_CODEC_ID_DNXHD,
                                   AV_CODEC_ID_MPEG4, AV_CODEC_ID_MPEG2VIDEO, AV_CODEC_ID_MJPEG})
         order.push_back(codec);
-    const bool ogg = std::string_view(request.container->name).starts_with("og");  // names no codecs, and refuses most
+    const bool ogg =
+        std::string_view(request.container->name).starts_with("og");  // its muxer names no codecs and refuses most
     std::vector<const KnownEncoder*> result;
     for (const AVCodecID codec : order) {
         const KnownEncoder* known = find_known(codec);
@@ -130,7 +131,7 @@ bool size_fits(AVCodecID codec, const MovieFormat& family, const MovieFormat& fo
     return format.width % (1 << family.log2_chroma_w) == 0 && format.height % (1 << family.log2_chroma_h) == 0;
 }
 
-/// Pixel format for the encoder, and what of the frame it stores.
+/// The pixel format for the encoder, and the planes of the frame that it stores.
 AVPixelFormat choose_pixel_format(const AVCodec& codec, const MovieFormat& format, Encoder& encoder) {
     std::vector<AVPixelFormat> offered;
     for (const AVPixelFormat* p = codec.pix_fmts; p && *p != AV_PIX_FMT_NONE; ++p)
@@ -141,7 +142,7 @@ AVPixelFormat choose_pixel_format(const AVCodec& codec, const MovieFormat& forma
     opaque.alpha = false;
     const bool offers_alpha = std::any_of(offered.begin(), offered.end(), [](auto p) { return family_of(p).alpha; });
     for (const MovieFormat& wanted : {format, opaque}) {
-        if (format.alpha && !wanted.alpha && offers_alpha) break;  // better converted than without alpha
+        if (format.alpha && !wanted.alpha && offers_alpha) break;  // conversion is better than the loss of alpha
         for (const AVPixelFormat p : offered)
             if (holds(p, wanted)) {
                 encoder.stored = wanted;
@@ -204,7 +205,7 @@ void set_quality(AVCodecContext& context, AVDictionary** options, const KnownEnc
     }
 }
 
-/// Of the encoder: the request's, but for codecs that count frames, or have too coarse a clock for it.
+/// The encoder's time base. It is the request's, except for codecs that count frames or have too coarse a clock.
 AVRational time_base_for(AVCodecID codec, const EncoderRequest& request) {
     constexpr int kMpeg4LargestTick = 65535;
     const bool coarse = codec == AV_CODEC_ID_MPEG4 && request.time_base.den > kMpeg4LargestTick;
@@ -212,13 +213,13 @@ AVRational time_base_for(AVCodecID codec, const EncoderRequest& request) {
     return counts || coarse ? av_inv_q(request.frame_rate) : request.time_base;
 }
 
-/// Has the frames coded as two fields, where the codec can; the container is told in any case.
+/// Codes frames as two fields, if the codec can. The container states the field order in any case.
 void set_fields(AVCodecContext& context, const EncoderRequest& request) {
     if (!interlaced(request.field_order)) return;
     context.field_order = request.field_order;
     switch (context.codec_id) {
         case AV_CODEC_ID_H264:
-            if (context.height % 4 == 0) context.flags |= AV_CODEC_FLAG_INTERLACED_DCT;  // x264 takes no other
+            if (context.height % 4 == 0) context.flags |= AV_CODEC_FLAG_INTERLACED_DCT;  // x264 takes no other height
             break;
         case AV_CODEC_ID_MPEG2VIDEO:
         case AV_CODEC_ID_MPEG4:

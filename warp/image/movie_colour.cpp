@@ -37,7 +37,7 @@ std::vector<float> reduction_taps(int log2_ratio, int position, bool smooth, int
             first = 0;
             return {0.25F, 0.25F, 0.25F, 0.25F};
         }
-        // The cosited inverse of ratio 2, twice.
+        // The cosited inverse of ratio 2, applied twice.
         int inner = 0;
         const std::vector<float> half = reduction_taps(1, -1, false, inner);
         std::vector<float> taps(3 * (half.size() - 1) + 1, 0.0F);
@@ -99,7 +99,7 @@ ChromaFilter::ChromaFilter(int log2_ratio, int position, bool smooth) : log2_rat
 
 ChromaFilter::Position ChromaFilter::enlarge(int x) const {
     if (log2_ratio_ == 0) return {x, 0.0F};
-    // In half luma pixels: the sample lies at `offset` within its cell of 2 * ratio.
+    // In units of half luma pixels, the sample lies at `offset` within its cell of 2 * ratio.
     const int ratio = 1 << log2_ratio_;
     const int offset = (position_ + 1) * (ratio - 1);
     const int steps = 2 * x - offset;

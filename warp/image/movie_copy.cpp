@@ -13,7 +13,7 @@ namespace eikonal::libav {
 
 namespace {
 
-/// Sound before a part of a movie that is decoded too, for codecs whose packets build on earlier ones [s].
+/// How much sound before a part of a movie is decoded too [s], for codecs whose packets build on earlier ones.
 constexpr int kPreroll = 1;
 
 /// Tags that describe the old file, not its contents.
@@ -39,7 +39,7 @@ void copy_side_data(const AVStream& from, AVStream& to) {
     }
 }
 
-/// True if streams with these parameters can be copied into the container as they are.
+/// Whether streams with these parameters can be copied into the container as they are.
 bool can_hold(const AVOutputFormat& container, const AVCodecParameters& parameters) {
     const bool tag_fits =
         container.codec_tag && av_codec_get_id(container.codec_tag, parameters.codec_tag) == parameters.codec_id;
@@ -50,7 +50,7 @@ bool can_hold(const AVOutputFormat& container, const AVCodecParameters& paramete
             const int answer = avformat_query_codec(&container, parameters.codec_id, FF_COMPLIANCE_NORMAL);
             return answer == 1 || answer == AVERROR_PATCHWELCOME;
         }
-        // Time code tracks are made again from the metadata of the video stream.
+        // The muxer makes time code tracks again from the metadata of the video stream.
         case AVMEDIA_TYPE_DATA:
             return tag_fits && parameters.codec_tag != MKTAG('t', 'm', 'c', 'd');
         case AVMEDIA_TYPE_ATTACHMENT:
@@ -177,7 +177,7 @@ int StreamCopier::copy_until(AVFormatContext& to, std::optional<std::int64_t> ti
         if (!pending_) {
             const int read = av_read_frame(input_.get(), packet_.get());
             if (read == AVERROR(EAGAIN)) continue;
-            if (read < 0) {  // the end; what damage there is, the reader of the pictures reports
+            if (read < 0) {  // the end. The reader of the pictures reports damage.
                 ended_ = true;
                 break;
             }
@@ -212,7 +212,7 @@ int StreamCopier::take_packet(AVFormatContext& to) {
 
 int StreamCopier::write_packet(AVFormatContext& to, Target& target, AVPacket& packet, AVRational time_base) {
     av_packet_rescale_ts(&packet, time_base, target.stream->time_base);
-    // Muxers refuse time stamps that do not rise, which rounding or a careless source may bring.
+    // Muxers refuse time stamps that do not rise. Rounding or a careless source may cause such time stamps.
     if (packet.dts != AV_NOPTS_VALUE) {
         if (target.last_dts != AV_NOPTS_VALUE) packet.dts = std::max(packet.dts, target.last_dts + 1);
         if (packet.pts != AV_NOPTS_VALUE) packet.pts = std::max(packet.pts, packet.dts);

@@ -1,8 +1,8 @@
-/// Carries what is not picture from a source movie into a new one: audio, subtitle, data and attachment streams packet
-/// by packet, chapters, metadata, and the side data of the video stream. Audio that the new container cannot hold is
-/// coded again (movie_audio.h). Used by movie_writer.cpp.
+/// Carries everything but the picture from a source movie into a new one: packets of audio, subtitle, data and
+/// attachment streams, chapters, metadata, and the side data of the video stream. Audio that the new container cannot
+/// hold is coded again (movie_audio.h). movie_writer.cpp uses it.
 ///
-/// The source is opened anew and read in step with the new movie's time, so that nothing piles up in memory.
+/// The source is opened a second time and read in step with the new movie's time, so that memory does not grow.
 #pragma once
 
 #include <cstdint>
@@ -25,24 +25,24 @@ class StreamCopier {
     const AVFormatContext& input() const { return *input_; }
     const AVStream& video() const { return *video_; }
 
-    /// Metadata, rotation and such of the video stream.
+    /// Copies metadata, rotation and other side data of the video stream.
     void describe_video(AVStream& to) const;
-    /// Metadata of the file.
+    /// Copies the metadata of the file.
     void describe_file(AVFormatContext& to) const;
-    /// Chapters; for whole movies only. `origin` is subtracted from their times (AV_TIME_BASE units).
+    /// Copies the chapters, for whole movies only. origin: subtracted from their times [AV_TIME_BASE units].
     void copy_chapters(AVFormatContext& to, std::int64_t origin) const;
-    /// Adds a stream for each that `to` can hold, as it is or coded again; `warn` is told of the latter and of those
-    /// that are dropped.
+    /// Adds every stream that `to` can hold as it is or coded again. `warn` is told of streams that are coded again or
+    /// dropped.
     void add_streams(AVFormatContext& to, const Warn& warn);
-    /// Tells `warn` that no stream is copied, if there are any.
+    /// Tells `warn` that no stream is copied, if there are streams to copy.
     void drop_streams(const Warn& warn, const std::string& why) const;
 
-    /// Time zero of the new movie in the source's time, and whether packets before it are left out.
+    /// Sets time 0 of the new movie, in the source's time. trim: leave out earlier packets.
     void start_at(std::int64_t time, AVRational time_base, bool trim);
-    /// Copies packets up to `time` (source's time; nothing: all that are left) into `to`; returns libav's error code,
-    /// or 0.
+    /// Copies packets up to `time`, in the source's time, into `to`. Without a time it copies all that are left.
+    /// Returns libav's error code, or 0.
     int copy_until(AVFormatContext& to, std::optional<std::int64_t> time, AVRational time_base);
-    /// Ends the streams that are coded again; returns libav's error code, or 0.
+    /// Ends the streams that are coded again. Returns libav's error code, or 0.
     int finish(AVFormatContext& to);
 
   private:
@@ -53,7 +53,7 @@ class StreamCopier {
     };
     bool wanted() const;
     int take_packet(AVFormatContext& to);
-    /// Writes a packet whose time stamps are in `time_base`, from time 0 of the new movie.
+    /// Writes a packet. Its time stamps are in `time_base` and count from time 0 of the new movie.
     static int write_packet(AVFormatContext& to, Target& target, AVPacket& packet, AVRational time_base);
     static AudioTranscoder::Emit writer(AVFormatContext& to, Target& target);
 

@@ -51,7 +51,7 @@ EIKONAL_CLONES void interleave(const float* rgb, const float* alpha, float* pixe
     }
 }
 
-/// Straight colour in three runs. Without alpha the picture's premultiplied colour stands as it is.
+/// Straight colour in three runs. Without alpha, the picture's premultiplied colour is taken as it is.
 EIKONAL_CLONES void deinterleave(const float* pixels, float* rgb, int count) {
     for (int x = 0; x < count; ++x) {
         rgb[x] = pixels[4 * x];
@@ -69,7 +69,7 @@ EIKONAL_CLONES void unpremultiply(float* rgb, const float* alpha, int count) {
     }
 }
 
-/// Codes of values where `chosen` is not 0; NaN and what lies below becomes 0.
+/// Codes of values where `chosen` is not 0. NaN and negative codes become 0.
 EIKONAL_CLONES void values_to_codes(const float* __restrict values, const std::uint8_t* __restrict chosen,
                                     std::uint16_t* __restrict codes, int count, float offset, float scale,
                                     float largest) {
@@ -109,7 +109,7 @@ class ChromaRows {
         const auto [index, fraction] = down_.enlarge(y);
         const std::uint16_t* upper = codes.data() + at(std::clamp(index, 0, height - 1), width);
         const std::uint16_t* lower = codes.data() + at(std::clamp(index + 1, 0, height - 1), width);
-        // One sample more on each side, so that enlarging needs no test of the border.
+        // One more sample on each side, so that the enlargement needs no test of the border.
         sample_row.resize(static_cast<std::size_t>(width) + 2);
         float* samples = sample_row.data() + 1;
         for (int x = 0; x < width; ++x) {
@@ -140,7 +140,7 @@ class ChromaRows {
 /// Writes linear pixels into a frame's planes.
 class FrameStore {
   public:
-    /// moved: empty for every pixel. clip: R'G'B' to 0 … 1, and reduce chroma smoothly.
+    /// moved: empty for every pixel. clip: clip R'G'B' to 0 … 1, and reduce chroma smoothly.
     FrameStore(MovieFrame& frame, const LinearImage& image, std::span<const std::uint8_t> moved, bool clip, bool gray)
         : frame_(frame),
           format_(frame.format),
@@ -256,7 +256,7 @@ class FrameStore {
         for (int c = end; c < count; ++c) slow(c);
     }
 
-    /// One flag a chroma sample of row c: a pixel of its cell moved.
+    /// One flag for each chroma sample of row c: whether a pixel of its cell moved.
     std::vector<std::uint8_t> moved_cells(int c) const {
         std::vector<std::uint8_t> cells(static_cast<std::size_t>(format_.plane_width(1)), 0);
         const int bottom = std::min((c + 1) << format_.log2_chroma_h, format_.height);
@@ -296,7 +296,7 @@ class FrameStore {
     const TransferCurve& curve_;
     float largest_;
     ChromaFilter across_, down_;
-    std::vector<std::uint8_t> all_;  ///< stands for the rows of an empty `moved_`
+    std::vector<std::uint8_t> all_;  ///< a row of flags for an empty `moved_`
     std::vector<std::uint8_t> needed_;
     std::array<std::vector<float>, 2> reduced_;
 };

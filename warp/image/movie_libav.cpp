@@ -32,7 +32,7 @@ void keep_message(void* object, int level, const char* format, va_list arguments
     int prefix = 0;
     av_log_format_line2(object, level, format, arguments, line.data(), static_cast<int>(line.size()), &prefix);
     std::string text(line.data());
-    // libav names objects by their addresses; keep what follows "[name @ 0x...] ".
+    // libav puts the addresses of objects into messages. Keep only the text behind "[name @ 0x...] ".
     if (text.starts_with('['))
         if (const auto end = text.find("] "); end != std::string::npos) text.erase(0, end + 2);
     std::replace(text.begin(), text.end(), '\n', ' ');
@@ -46,14 +46,14 @@ const AVPixFmtDescriptor& describe(AVPixelFormat pixel_format) {
     return *descriptor;
 }
 
-/// Component of a pixel format that fills plane `plane` of a frame (0 … 2 colour, 3 alpha); -1: none.
+/// The component of a pixel format that fills plane `plane` of a frame (0 … 2 colour, 3 alpha). -1 if there is none.
 int component_of(const AVPixFmtDescriptor& descriptor, const MovieFormat& format, int plane) {
     if (!format.has_plane(plane)) return -1;
     if (descriptor.flags & AV_PIX_FMT_FLAG_PAL) return plane == 3 ? 3 : 2 - plane;  // palettes are B, G, R, A
     return plane == 3 ? descriptor.nb_components - 1 : plane;
 }
 
-/// Integer samples that av_read_image_line2 understands.
+/// Whether av_read_image_line2 can read the format's samples, which must be integers.
 bool readable(const AVPixFmtDescriptor& descriptor) {
     constexpr std::uint64_t kOther =
         AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_BAYER | AV_PIX_FMT_FLAG_FLOAT;
@@ -70,7 +70,7 @@ std::uint16_t widen(unsigned code, int depth) {
     return static_cast<std::uint16_t>(bits);
 }
 
-/// One component of one row lies as plain native integers in its own plane.
+/// Whether a component lies in its own plane as plain native integers.
 bool plain(const AVPixFmtDescriptor& descriptor, int component, int bytes) {
     const AVComponentDescriptor& c = descriptor.comp[component];
     return !(descriptor.flags & (AV_PIX_FMT_FLAG_BE | AV_PIX_FMT_FLAG_PAL)) && c.step == bytes && c.shift == 0 &&
@@ -237,7 +237,7 @@ void read_planes(const AVFrame& picture, MovieFrame& frame) {
 
 void write_planes(const MovieFrame& frame, const MovieFormat& format, AVFrame& picture) {
     const AVPixFmtDescriptor& descriptor = describe(static_cast<AVPixelFormat>(picture.format));
-    if (!(descriptor.flags & AV_PIX_FMT_FLAG_PLANAR))  // av_write_image_line2 adds to what is there
+    if (!(descriptor.flags & AV_PIX_FMT_FLAG_PLANAR))  // av_write_image_line2 only sets bits, so clear them first
         std::fill_n(picture.data[0], static_cast<std::ptrdiff_t>(picture.linesize[0]) * picture.height,
                     std::uint8_t{0});
     for (int plane = 0; plane < 4; ++plane) {

@@ -56,17 +56,17 @@ struct MovieReader::State {
     libav::Frame picture = libav::make_frame();
     libav::Packet packet = libav::make_packet(), ahead = libav::make_packet();
     MovieFormat format;
-    std::atomic<bool> complained = false;  ///< the decoder told of an error
+    std::atomic<bool> complained = false;  ///< the decoder reported an error
     bool pending = false;                  ///< `picture` is decoded and not yet handed out
     bool looked_ahead = false;             ///< `ahead` holds the packet after the last one sent
     bool finished = false;                 ///< file and decoder are at their end
     bool interlaced = false;
-    int number = 0;                ///< of the last frame decoded
-    std::int64_t next_pts = 0;     ///< for frames without time stamps
+    int number = 0;                ///< number of the last decoded frame
+    std::int64_t next_pts = 0;     ///< the time of a frame without a time stamp
     std::int64_t end_pts = 0;      ///< largest end of a frame so far
-    std::deque<FrameError> early;  ///< of the damaged frames before the first whole one, not yet told
+    std::deque<FrameError> early;  ///< errors of damaged frames before the first whole one, not yet reported
     std::set<std::pair<std::int64_t, std::int64_t>> incomplete;  ///< position and pts of packets that lack data
-    std::string read_error;                                      ///< why the file ended before its end
+    std::string read_error;                                      ///< why reading stopped before the file's end
 
     explicit State(std::filesystem::path file) : path(std::move(file)) { open(); }
 
@@ -90,7 +90,7 @@ struct MovieReader::State {
         if (!decoder || avcodec_parameters_to_context(decoder.get(), stream->codecpar) < 0) throw std::bad_alloc();
         decoder->pkt_timebase = stream->time_base;
         decoder->err_recognition = AV_EF_CRCCHECK;
-        if (codec->id == AV_CODEC_ID_FFV1) {  // tells of damage by a message only, while it decodes the frame
+        if (codec->id == AV_CODEC_ID_FFV1) {  // it reports damage by a message only, while it decodes the frame
             decoder->thread_type = FF_THREAD_SLICE;
             libav::watch_errors(*decoder, complained);
         }
@@ -105,7 +105,7 @@ struct MovieReader::State {
         interlaced = picture->interlaced_frame != 0;
     }
 
-    /// Decodes the first whole frame; the errors of those before it wait for their turn.
+    /// Decodes the first whole frame. Keeps the errors of frames before it for next().
     void find_first() {
         while (!pending) {
             try {
@@ -137,7 +137,7 @@ struct MovieReader::State {
         return result;
     }
 
-    /// Feeds packets until `picture` holds the next frame; false at the end. Sets its time stamp. FrameError.
+    /// Feeds packets until `picture` holds the next frame, and sets its time stamp. False at the end. FrameError.
     bool decode() {
         while (!finished) {
             const int received = avcodec_receive_frame(decoder.get(), picture.get());
@@ -164,7 +164,7 @@ struct MovieReader::State {
         throw error(number, fmt::format("the stream is damaged: {}", libav::reason(code)));
     }
 
-    /// Reads the stream's next packet; false at the end of what can be read.
+    /// Reads the stream's next packet. False if no more can be read.
     bool read(AVPacket& into) {
         while (true) {
             av_packet_unref(&into);
@@ -176,8 +176,8 @@ struct MovieReader::State {
         }
     }
 
-    /// Gives the decoder one more packet of the stream, or the sign that there is none. An incomplete packet is a
-    /// damaged frame if others follow, and else the end of a movie that is cut off.
+    /// Gives the decoder one more packet of the stream, or tells it that there is none. An incomplete packet is a
+    /// damaged frame if others follow. Else it is the end of a movie that is cut off.
     void feed() {
         bool there = true;
         if (std::exchange(looked_ahead, false))
@@ -231,16 +231,16 @@ struct MovieReader::State {
 
     AVRational frame_rate() const { return av_guess_frame_rate(input.get(), stream, nullptr); }
 
-    /// When the first frame is shown [s].
+    /// The time at which the first frame is shown [s].
     double start() const {
         return stream->start_time == AV_NOPTS_VALUE
                    ? 0
                    : static_cast<double>(stream->start_time) * av_q2d(stream->time_base);
     }
 
-    /// Length in seconds that the header states for the video, or 0.
+    /// The video's length that the header states [s], or 0.
     double stated_length() const {
-        // Matroska's tag tells when the last frame ends, on a clock that may have begun before the first
+        // Matroska's tag is the time at which the last frame ends. Its clock may begin before the first frame.
         if (const double tagged = seconds_of_tag(stream->metadata); tagged > 0) return tagged - std::max(0.0, start());
         const bool stated = input->duration_estimation_method == AVFMT_DURATION_FROM_STREAM;
         if (stated && stream->duration > 0) return static_cast<double>(stream->duration) * av_q2d(stream->time_base);
@@ -249,7 +249,7 @@ struct MovieReader::State {
         return 0;
     }
 
-    /// A movie cut off between two packets just ends; only the length in its header tells.
+    /// A movie that is cut off between two packets just ends. Only the length in its header reveals it.
     void check_length() {
         const double unit = av_q2d(stream->time_base);
         const double length = static_cast<double>(end_pts) * unit - start();

@@ -19,7 +19,7 @@ namespace eikonal {
 
 namespace {
 
-/// Of a source whose time stamps are kept [1/s]; encoders and containers have no use for finer ones.
+/// The finest clock for a source whose time stamps are kept [1/s]. Encoders and containers have no use for a finer one.
 constexpr int kFinestClock = 6553500;
 
 AVRational to_libav(Rational value) {
@@ -45,7 +45,7 @@ void advance_time_code(AVDictionary** metadata, AVRational rate, int frames) {
 }  // namespace
 
 struct MovieWriter::State {
-    enum class Timing { Source, Part, Counted };  ///< the whole movie; a piece from time 0; one frame after the other
+    enum class Timing { Source, Part, Counted };  ///< the source's times; a part from time 0; one frame after the other
 
     std::filesystem::path path;
     MovieSettings settings;
@@ -58,12 +58,12 @@ struct MovieWriter::State {
     libav::Frame picture = libav::make_frame(), planar = libav::make_frame();
     libav::Packet packet = libav::make_packet();
     Timing timing = Timing::Counted;
-    AVRational frame_base{1, 25};  ///< of the frames' time stamps
-    std::int64_t origin = 0;       ///< pts of a frame at time 0, in frame_base
-    std::int64_t counted = 0;      ///< next time stamp of Timing::Counted, in frame_base
-    std::int64_t end = 0;          ///< end of the last frame in the source's time, in frame_base
+    AVRational frame_base{1, 25};  ///< unit of the frames' time stamps [s]
+    std::int64_t origin = 0;       ///< pts of time 0 [frame_base]
+    std::int64_t counted = 0;      ///< next time stamp of Timing::Counted [frame_base]
+    std::int64_t end = 0;          ///< end of the last frame in the source's time [frame_base]
     std::int64_t last_pts = AV_NOPTS_VALUE;
-    std::map<std::int64_t, std::int64_t> durations;  ///< of frames within the encoder, by time stamp
+    std::map<std::int64_t, std::int64_t> durations;  ///< durations of the frames within the encoder, by time stamp
     std::int64_t frames = 0;
 
     State(const std::filesystem::path& target, const MovieFormat& movie_format, MovieSettings movie_settings)
@@ -153,7 +153,7 @@ struct MovieWriter::State {
         stream->sample_aspect_ratio = request.pixel_aspect;
         const bool quicktime = has_brand("mp4") || has_brand("mov");
         if (quicktime && encoder.context->codec_id == AV_CODEC_ID_HEVC)
-            stream->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');  // the tag that all players know
+            stream->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');  // all players know this tag
 
         picture->interlaced_frame = libav::interlaced(request.field_order) ? 1 : 0;
         picture->top_field_first = libav::top_field_first(request.field_order) ? 1 : 0;
@@ -188,7 +188,7 @@ struct MovieWriter::State {
         if (written < 0) throw error(written, "cannot be started");
     }
 
-    /// Time stamp of a frame in the encoder's time base.
+    /// A frame's time stamp in the encoder's time base.
     std::int64_t stamp(const MovieFrame& frame) {
         const std::int64_t duration = std::max<std::int64_t>(1, frame.duration);
         if (frames == 0 && timing == Timing::Part) {

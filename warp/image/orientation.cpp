@@ -7,7 +7,7 @@
 namespace eikonal {
 namespace {
 
-/// What Exif's numbers 1 … 8 ask for: exchange x and y of a stored pixel, then count x, y from the other side.
+/// Meaning of Exif's numbers 1 … 8: exchange x and y of a stored pixel, then count x or y from the other side.
 struct Turn {
     bool exchange, from_right, from_below;
 };
@@ -21,7 +21,7 @@ constexpr std::array<Turn, 9> kTurns{{{},
                                       {true, true, true},
                                       {true, false, true}}};
 
-/// Gives each of two attributes the other's value, where the picture has both.
+/// Exchanges the values of two attributes, if the picture has both.
 void exchange(OIIO::ImageSpec& spec, const char* a, const char* b) {
     const OIIO::ParamValue *first = spec.find_attribute(a), *second = spec.find_attribute(b);
     if (first == nullptr || second == nullptr) return;

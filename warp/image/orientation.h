@@ -1,7 +1,7 @@
-/// Photographs that were stored as the sensor lay, with a tag that tells how to turn them (Exif's Orientation).
+/// Photographs that are stored as the sensor lay, with a tag that tells how to turn them (Exif's Orientation).
 ///
-/// Up in the picture is up in the air, so pixels are turned upright as they are read, whatever is done with them later,
-/// and the tag becomes 1, "as stored". The values stay what they are.
+/// The warp needs to know which way is up. Pixels are therefore turned upright when they are read, and the tag becomes
+/// 1, "as stored". Their values do not change.
 #pragma once
 
 #include <string_view>
@@ -10,12 +10,12 @@
 
 namespace eikonal {
 
-/// Whether the tag means that in files of this format (OpenImageIO's name). Not in EXR, where an attribute of this name
-/// that a conversion has left means nothing to those who show it; nor in DPX, where scanners tell how they ran.
+/// Whether files of this format (OpenImageIO's name) use the tag in this sense. EXR does not: viewers ignore an
+/// attribute of this name, which a conversion may have left. DPX does not: its tag states how a scanner ran.
 bool may_lie_turned(std::string_view format);
 
-/// Turns windows, pixels (if there are any), resolution and pixel aspect as the tag says (2 … 8; else nothing happens).
-/// Shown by a program that heeds the tag, the part looks the same as before.
+/// Turns windows, pixels (if there are any), resolution and pixel aspect as the tag says. Only tags 2 … 8 do anything.
+/// A program that heeds the tag shows the part as before.
 void turn_upright(Part& part);
 
 }  // namespace eikonal

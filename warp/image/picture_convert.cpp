@@ -15,14 +15,14 @@ namespace {
 
 using OIIO::TypeDesc;
 
-/// What matters here about a writable format.
+/// The abilities of a writable format.
 struct Format {
     std::string name;
     bool windows;  ///< holds a data window apart from the display window
     bool alpha;
     bool linear_float;  ///< holds linear light in float types
     bool sixteen_bits;
-    bool associated;  ///< its alpha: the others are unassociated by their standards
+    bool associated;  ///< its alpha is associated. The standards of all others ask for unassociated alpha.
 };
 
 Format format_for(const fs::path& path) {
@@ -34,7 +34,7 @@ Format format_for(const fs::path& path) {
     }
     Format format;
     format.name = output->format_name();
-    format.windows = format.name == "openexr";  // DPX claims to, but pads
+    format.windows = format.name == "openexr";  // DPX claims windows, but pads
     format.alpha = output->supports("alpha") != 0;
     format.linear_float = format.name == "openexr" || format.name == "hdr";
     format.sixteen_bits = format.name == "png" || format.name == "tiff" || format.name == "dpx" ||
@@ -91,7 +91,7 @@ Picture encode(const LinearImage& source, const Format& format, int colours, boo
     return picture;
 }
 
-/// Metadata about how the old format stored the picture, which mean nothing, or the wrong thing, in another.
+/// Metadata about the storage in the old format. They would mean nothing, or something wrong, in another format.
 bool about_storage(OIIO::string_view name) {
     for (const char* prefix :
          {"oiio:", "openexr:", "png:", "tiff:", "jpeg:", "dpx:", "bmp:", "targa:", "hdr:", "webp:"})

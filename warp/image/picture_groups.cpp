@@ -13,7 +13,7 @@ namespace {
 
 using OIIO::TypeDesc;
 
-/// A group's channels as places in the stored pixel.
+/// The places of a group's channels in the stored pixel.
 struct Lane {
     int lane;
     std::size_t offset;
@@ -53,8 +53,8 @@ struct Layout {
     }
 };
 
-/// Codes of one channel to floats: linear light already if `curve` is given and the type is an integer's of 8 or 16
-/// bits (a table look-up); returns whether that was done.
+/// Codes of one channel to floats. If `curve` is given and the type is an integer of 8 or 16 bits, a table look-up
+/// gives linear light at once. Returns whether it did so.
 bool decode_codes(const Lane& lane, const TransferCurve* curve, const std::byte* row, const Layout& layout,
                   float* out) {
     const std::byte* at = row + lane.offset;
@@ -78,7 +78,7 @@ bool decode_codes(const Lane& lane, const TransferCurve* curve, const std::byte*
     return false;
 }
 
-/// Returns how many values are not finite as stored.
+/// Returns how many stored values are not finite.
 std::size_t load_row(const Layout& layout, const std::byte* row, float* out) {
     const std::size_t n = layout.width;
     if (layout.packed == TypeDesc::HALF)
@@ -95,7 +95,7 @@ std::size_t load_row(const Layout& layout, const std::byte* row, float* out) {
         for (std::size_t i = 0; i < n; ++i) out[4 * i + 3] = 1.0f;
 
     const TransferCurve& curve = *layout.curve;
-    // Codes that were premultiplied before they were encoded for display: divide, linearise, multiply.
+    // These codes were premultiplied before they were encoded for display. So divide, linearise, multiply.
     const bool divide = layout.has_alpha && layout.premultiplied && !curve.linear();
     for (const Lane& colour : layout.colours) {
         const bool done = decode_codes(colour, divide ? nullptr : &curve, row, layout, out);
@@ -145,7 +145,7 @@ void store_span(const Layout& layout, const float* linear, std::byte* row, std::
             const float scale = pixel[3] > 0 ? 1.0f / pixel[3] : 0.0f;
             for (std::size_t lane = 0; lane < 3; ++lane) pixel[lane] *= scale;
         }
-        if (layout.premultiplied) {  // codes of the straight colour, then times alpha
+        if (layout.premultiplied) {  // encode the straight colour, then multiply by alpha
             curve.from_linear(scratch.pixels);
             for (std::size_t i = 0; i < count; ++i)
                 for (std::size_t lane = 0; lane < 3; ++lane) scratch.pixels[4 * i + lane] *= in[4 * i + 3];
@@ -193,7 +193,7 @@ void store_group(Part& part, const ChannelGroup& group, const LinearImage& image
         const std::uint8_t* mask = moved.data() + y * layout.width;
         const float* linear = image.pixels.data() + 4 * y * layout.width;
         std::byte* row = part.pixels.data() + y * layout.width * layout.pixel_bytes;
-        for (std::size_t x = 0; x < layout.width;) {  // runs of moved pixels
+        for (std::size_t x = 0; x < layout.width;) {  // one run of moved pixels after the other
             if (mask[x] == 0) {
                 ++x;
                 continue;

@@ -24,7 +24,7 @@ constexpr const char* kTruncated = "the file is truncated; copy it again";
     throw FrameError(fmt::format("cannot read '{}': {}", path.string(), reason));
 }
 
-/// Why the library cannot read the file: what it says of files that end too early differs from format to format.
+/// The reason why the library cannot read the file. Its own text for files that end too early differs between formats.
 [[noreturn]] void refuse_content(const fs::path& path, const std::string& said, std::string_view fallback) {
     for (const char* end : {"end of file", "premature end", "Read error at scanline", "incomplete"})
         if (OIIO::Strutil::icontains(said, end)) refuse(path, kTruncated);
@@ -42,8 +42,8 @@ void check_file(const fs::path& path) {
     if (!file) refuse(path, last_system_error());
 }
 
-/// Whether a JPEG has its end marker. libjpeg replaces missing data by grey with no more than a warning, which
-/// OpenImageIO swallows, so the segments are walked here: lengths are skipped, coded data searched for FF D9.
+/// Whether a JPEG has its end marker. libjpeg replaces missing data by grey and only warns, and OpenImageIO drops the
+/// warning. This function therefore walks the segments itself. It skips lengths and searches coded data for FF D9.
 bool jpeg_is_whole(const fs::path& path) {
     std::string bytes;
     if (!OIIO::Filesystem::read_text_file(path.string(), bytes)) return false;
@@ -69,7 +69,8 @@ bool jpeg_is_whole(const fs::path& path) {
     return false;
 }
 
-/// Whether a file is no PNG or has its end chunk; libpng would tell, but prints on stderr by itself, even when opening.
+/// Whether a PNG has its end chunk. True for other files. libpng would tell, but it prints on stderr even when it opens
+/// a file.
 bool png_is_whole(const fs::path& path) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     constexpr long kSignature = 8, kChecksum = 4;
@@ -100,7 +101,7 @@ bool ends_are_readable(OIIO::ImageInput& input, int index) {
     const int wide = tiled ? spec.tile_width : spec.width, high = tiled ? spec.tile_height : 1;
     std::vector<std::byte> pixels(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high) *
                                   spec.pixel_bytes(true));
-    const auto read_at = [&](int column, int row) {  // counted from the data window's corner, in tiles if there are
+    const auto read_at = [&](int column, int row) {  // from the data window's corner, in tiles if there are tiles
         const int x = spec.x + column * wide, y = spec.y + row * high;
         const int x_end = std::min(x + wide, spec.x + spec.width), y_end = std::min(y + high, spec.y + spec.height);
         constexpr auto kNative = OIIO::TypeDesc::UNKNOWN;
@@ -116,7 +117,7 @@ Picture read(const fs::path& path, Wanted wanted) {
     check_file(path);
     if (!png_is_whole(path)) refuse(path, kTruncated);
     OIIO::ImageSpec hints;
-    hints["oiio:UnassociatedAlpha"] = 1;  // raw codes; load_group premultiplies in linear light
+    hints["oiio:UnassociatedAlpha"] = 1;  // raw codes: load_group premultiplies in linear light
     const auto input = OIIO::ImageInput::open(path.string(), &hints);
     if (!input) refuse_content(path, OIIO::geterror(), "not an image file");
 

@@ -20,13 +20,13 @@ namespace {
     throw FrameError(fmt::format("cannot write '{}': {}", path.string(), reason));
 }
 
-/// What the library says, which names the temporary, as one line that names the file.
+/// The library's message as one line. It names the temporary file, which is replaced by the final name.
 std::string reason(const OIIO::ImageOutput& output, const std::string& temporary, const fs::path& path,
                    std::string_view fallback) {
     return one_line(OIIO::Strutil::replace(output.geterror(), temporary, path.string(), true), fallback);
 }
 
-/// OpenImageIO chooses among PPM and PGM by the channels, whatever the extension says.
+/// OpenImageIO chooses between PPM and PGM by the channels, whatever the extension is.
 void check_pnm(const OIIO::ImageOutput& output, const fs::path& path, const Picture& picture) {
     if (std::string_view(output.format_name()) != "pnm") return;
     const std::string extension = OIIO::Strutil::lower(path.extension().string());
@@ -41,7 +41,7 @@ void write_parts(OIIO::ImageOutput& output, const std::string& name, const fs::p
     std::vector<OIIO::ImageSpec> specs;
     for (const Part& part : picture.parts) {
         OIIO::ImageSpec& spec = specs.emplace_back(part.spec);
-        // Where there is no date, OpenImageIO would put today's: the same frame would not be the same bytes tomorrow.
+        // OpenImageIO would add today's date where there is none. The same frame would then not give the same bytes.
         if (spec.find_attribute("DateTime") == nullptr) spec.attribute("DateTime", "");
     }
     const bool many = specs.size() > 1;
@@ -59,7 +59,7 @@ void write_parts(OIIO::ImageOutput& output, const std::string& name, const fs::p
     if (!output.close()) refuse(path, reason(output, name, path, "closing failed"));
 }
 
-/// Why no more can be written to the end of a file, from the system; empty if more can.
+/// The system's reason why no more can be written to the end of a file. Empty if more can be written.
 std::string growth_error(const fs::path& file) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "ab"), std::fclose);
     const std::vector<char> block(std::size_t{1} << 20);
@@ -69,8 +69,8 @@ std::string growth_error(const fs::path& file) {
     return grows ? "" : last_system_error();
 }
 
-/// Formats that do not write through a proxy hide errors, or tell them without the system's reason; reading the file
-/// back shows the ones, trying to write more the others.
+/// Formats that do not write through a proxy hide errors, or report them without the system's reason. Reading the file
+/// back reveals the former. An attempt to write more reveals the latter.
 void write_and_verify(OIIO::ImageOutput& output, const fs::path& temporary, const fs::path& path,
                       const Picture& picture) {
     bool written = false;
@@ -91,7 +91,7 @@ bool can_write_picture(const fs::path& path) {
     const auto output = OIIO::ImageOutput::create(path.string());
     OIIO::geterror();  // clears the thread's message
     if (!output) return false;
-    // GIF's 256 colours and PBM's two hold no frame of footage, and the others are no files
+    // GIF's 256 colours and PBM's two cannot hold a frame of footage. The others are not files.
     const std::string_view name = output->format_name();
     return name != "gif" && name != "term" && name != "null" &&
            !OIIO::Strutil::iequals(path.extension().string(), ".pbm");
@@ -104,18 +104,18 @@ void write_picture(const fs::path& path, const Picture& picture) {
     std::optional<CheckedOutput> checked;  // outlives the output, which may still write when it is destroyed
     const auto output = OIIO::ImageOutput::create(name);
     if (!output) {
-        OIIO::geterror();  // clears the thread's message, which names the temporary
+        OIIO::geterror();  // clears the thread's message, which names the temporary file
         refuse(path, fmt::format("no image format has the extension '{}'", path.extension().string()));
     }
     check_pnm(*output, path, picture);
-    // OpenImageIO's TIFF writer goes back to its directories by reading, which it cannot do through a proxy.
+    // OpenImageIO's TIFF writer reads its directories back, which it cannot do through a proxy.
     if (output->supports("ioproxy") && std::string_view(output->format_name()) != "tiff") {
         checked.emplace(file.temporary(), path);
         output->set_ioproxy(&*checked);
         try {
             write_parts(*output, name, path, picture);
         } catch (const FrameError&) {
-            checked->finish();  // the system's reason, if there is one
+            checked->finish();  // reports the system's reason, if there is one
             throw;
         }
         checked->finish();
@@ -157,7 +157,8 @@ void write_float_exr(const fs::path& path, const PixelWindow& data, const PixelW
 
 void set_image_threads(int threads) {
     OIIO::attribute("threads", threads);
-    OIIO::attribute("exr_threads", threads > 1 ? threads : -1);  // -1: in the calling thread; a pool of one would wait
+    OIIO::attribute("exr_threads",
+                    threads > 1 ? threads : -1);  // -1: in the calling thread, since a pool of one would wait
 }
 
 }  // namespace eikonal

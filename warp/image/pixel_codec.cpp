@@ -1,6 +1,6 @@
 #include "warp/image/pixel_codec.h"
 
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(__clang__)  // Clang 14 cannot ask for "f16c"
 #include <immintrin.h>
 #endif
 
@@ -17,9 +17,9 @@ namespace eikonal {
 namespace {
 
 constexpr std::uint32_t kSign = 0x80000000u, kMagnitude = 0x7fffffffu, kInfinity = 0x7f800000u;
-constexpr std::uint32_t kLargestHalfBits = 0x477fe000u;  // of kLargestHalf as a float
+constexpr std::uint32_t kLargestHalfBits = 0x477fe000u;  // bits of kLargestHalf as a float
 
-/// Exact: moves the exponent and mantissa into place and corrects the bias by a power of two.
+/// Half to float, exact. Moves exponent and mantissa into place and corrects the bias by a power of two.
 inline float half_to_float(std::uint16_t stored) {
     const std::uint32_t magnitude = stored & 0x7fffu;
     const std::uint32_t finite = std::bit_cast<std::uint32_t>(std::bit_cast<float>(magnitude << 13) * 0x1p112f);
@@ -34,14 +34,14 @@ inline float finite(float value) {
     return std::bit_cast<float>((bits & kSign) | (magnitude >= kInfinity ? limited : magnitude));
 }
 
-/// Round to nearest even; beyond the range the largest finite half, NaN zero.
+/// Float to half, rounded to nearest even. Limits to the largest finite half. NaN becomes zero.
 inline std::uint16_t float_to_half(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     std::uint32_t magnitude = bits & kMagnitude;
     magnitude = magnitude > kInfinity ? 0 : magnitude;
     magnitude = magnitude > kLargestHalfBits ? kLargestHalfBits : magnitude;
     const std::uint32_t normal = (magnitude - 0x38000000u + 0xfffu + ((magnitude >> 13) & 1u)) >> 13;
-    // Below 2^-14 an addition to 0.5, whose last place is the smallest half, does the rounding.
+    // Below 2^-14, the addition to 0.5 rounds: the last place of 0.5 is the smallest half.
     const std::uint32_t tiny = std::bit_cast<std::uint32_t>(std::bit_cast<float>(magnitude) + 0.5f) - 0x3f000000u;
     const std::uint32_t half = magnitude < 0x38800000u ? tiny : normal;
     return static_cast<std::uint16_t>(half | ((bits >> 16) & 0x8000u));
@@ -69,7 +69,7 @@ void encode_each(const float* values, std::size_t lanes, std::byte* stored, std:
     }
 }
 
-/// In float for up to 16 bits (all codes exact), in double beyond.
+/// The type for computing with codes: float up to 16 bits, where all codes are exact, and double beyond.
 template <class T>
 using Wide = std::conditional_t<(sizeof(T) > 2), double, float>;
 
@@ -92,7 +92,7 @@ T nearest(float value) {
     return static_cast<T>(scaled < 0 ? scaled - kHalf : scaled + kHalf);
 }
 
-/// Calls `f` with a value of the stored type (half: std::byte, which is none of the others).
+/// Calls `f` with a value of the stored type. std::byte stands for half.
 template <class F>
 void dispatch(OIIO::TypeDesc::BASETYPE type, F f) {
     switch (type) {
@@ -165,8 +165,8 @@ EIKONAL_CLONES std::size_t decode_half_finite(const std::uint16_t* stored, float
 
 namespace {
 
-#if defined(__x86_64__)
-/// float_to_half by the processor's own conversion, which rounds alike; returns how many it has done.
+#if defined(__x86_64__) && !defined(__clang__)
+/// float_to_half by the processor's own conversion, which rounds in the same way. Returns how many values it converted.
 __attribute__((target("avx,f16c"))) std::size_t encode_half_f16c(const float* values, std::uint16_t* stored,
                                                                  std::size_t count) {
     const __m256 largest = _mm256_set1_ps(65504.0f), sign = _mm256_set1_ps(-0.0f);
@@ -186,7 +186,7 @@ __attribute__((target("avx,f16c"))) std::size_t encode_half_f16c(const float* va
 
 void encode_half(const float* values, std::uint16_t* stored, std::size_t count) {
     std::size_t done = 0;
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(__clang__)
     static const bool has_f16c = __builtin_cpu_supports("avx") && __builtin_cpu_supports("f16c");
     if (has_f16c) done = encode_half_f16c(values, stored, count);
 #endif

@@ -37,7 +37,7 @@ std::optional<Place> find(const Picture& picture, std::string_view wanted) {
     return std::nullopt;
 }
 
-/// All values of one channel on its data window.
+/// All values of one channel on the part's data window.
 std::vector<float> decode(const Place& place) {
     const Part& part = *place.part;
     std::vector<float> values(data_window(part).area());
@@ -71,7 +71,7 @@ std::string channel_list(const Picture& picture) {
     return list;
 }
 
-/// What is odd about a matte that is taken; `chosen`: by us, as the user has named none of the channels `all`.
+/// Remarks about a matte. `chosen`: whether the user named none of the channels `all`.
 void add_remarks(const Plane& matte, const std::filesystem::path& file, bool chosen, const std::string& all,
                  std::vector<Remark>& remarks) {
     if (chosen && all != matte.channel)
@@ -110,7 +110,7 @@ Plane take_plane(const Picture& picture, const std::filesystem::path& file, std:
 
     const Part& part = *place->part;
     const PixelWindow own = data_window(part), shown = display_window(part);
-    int dx = 0, dy = 0;  // from the footage's coordinates to the file's
+    int dx = 0, dy = 0;  // shift from the footage's coordinates to the file's
     if (shown.width == display.width && shown.height == display.height) {
         dx = shown.x0 - display.x0;
         dy = shown.y0 - display.y0;

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void refuse(std::string_view text, std::string_view reason) {
-    throw UserError(fmt::format("--frames '{}': {}; write 1001-1100, 1-9x2, 1-9:2, -5--1 or a list such as 1,5,10-20",
+    throw UserError(fmt::format("`frames` '{}': {}; write 1001-1100, 1-9x2, 1-9:2, -5--1 or a list such as 1,5,10-20",
                                 text, reason));
 }
 
@@ -37,7 +37,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// The same of a list of frames, whose numbers have an end.
+/// Takes a frame number. UserError if it does not fit into an int.
 std::optional<int> take_frame(std::string_view& rest, std::string_view text) {
     const std::string_view before = rest;
     const auto frame = take_integer(rest);
@@ -76,7 +76,7 @@ Range parse_range(std::string_view item, std::string_view text) {
     return range;
 }
 
-/// A run of # and @, or %d, %04d: where it starts and ends in the name, and its digits.
+/// The place of the frame number in a name: a run of # and @, or %d, %04d. Where it starts and ends, and its digits.
 struct Run {
     std::size_t begin, end;
     int digits;

@@ -13,7 +13,7 @@ using portable::exp;
 using portable::log;
 using portable::pow;
 
-// BT.709 with the constants of BT.2020, which make the two branches meet.
+// BT.709 with the constants of BT.2020, for which the two branches meet.
 constexpr double kAlpha709 = 1.09929682680944, kBeta709 = 0.018053968510807;
 // ST 2084
 constexpr double kM1 = 2610.0 / 16384, kM2 = 2523.0 / 32, kC1 = 3424.0 / 4096, kC2 = 2413.0 / 128, kC3 = 2392.0 / 128;
@@ -65,7 +65,7 @@ double from_linear_positive(Transfer transfer, double v) {
         case Transfer::Gamma22:
             return pow(v, 1 / 2.2);
         case Transfer::PQ: {
-            if (v == 0) return 0;  // the formula's 7e-7 would break the symmetry
+            if (v == 0) return 0;  // the formula gives 7e-7, which would break the symmetry
             const double p = pow(v * kPqWhite, kM1);
             return pow((kC1 + kC2 * p) / (1 + kC3 * p), kM2);
         }
@@ -98,7 +98,7 @@ TransferCurve::Table tabulate(int low_exponent, int high_exponent, int nodes_log
 }  // namespace
 
 namespace detail {
-/// In blocks, so that the arithmetic vectorises around the look-ups.
+/// Works in blocks, so that the arithmetic around the look-ups vectorises.
 EIKONAL_CLONES void apply_table(const float* nodes, std::int32_t low_bits, std::int32_t high_bits, int shift,
                                 float* values, std::size_t n) {
     constexpr std::size_t kBlock = 128;
@@ -156,9 +156,9 @@ TransferCurve::TransferCurve(Transfer transfer) : transfer_(transfer) {
         codes8_[static_cast<std::size_t>(code)] = eikonal::to_linear(transfer, static_cast<float>(code) / 255.0f);
     if (transfer == Transfer::Linear || transfer == Transfer::KodakLog) return;
     tabulated_ = true;
-    // Codes below 2^-12 are on the straight part of every curve that is steep there, or below a code's half step.
+    // Codes below 2^-12 lie on the straight part of every curve that is steep there, or below half a code's step.
     to_ = tabulate(-20, 16, 10, [&](float x) { return eikonal::to_linear(transfer, x); });
-    // Light: PQ and the pure powers need the long foot near zero.
+    // For light, PQ and the pure powers need many nodes near zero.
     from_ = tabulate(-48, 17, 8, [&](float x) { return eikonal::from_linear(transfer, x); });
 }
 

@@ -1,7 +1,7 @@
-/// Coded values to linear light and back: the only definition of the transfer curves of pictures and movies.
+/// Coded values to linear light and back. This is the only definition of the transfer curves of pictures and movies.
 ///
-/// Codes are floats on 0…1 (an integer code divided by its largest); linear light is 1 at reference white. Curves below
-/// zero and above one follow from the formula (odd about zero), so that super-whites and filter undershoots survive:
+/// Codes are floats on 0…1: an integer code divided by its largest. Linear light is 1 at reference white. The formula
+/// also holds above one, and it is odd about zero. Super-whites and undershoots of filters therefore survive.
 ///
 ///   Linear    identity
 ///   SRGB      IEC 61966-2-1
@@ -13,10 +13,11 @@
 ///   KodakLog  Cineon/DPX printing density: black 95, white 685 of 1023, gamma 0.6; not odd: code 0 is slightly
 ///             negative light; codes are limited to 2
 ///
-/// Two forms. The free functions evaluate the formula (noise/math/portable_math.h) and round once. TransferCurve
-/// tabulates it: within kCurveError of the formula (relative to the larger of the value and 1e-3), exact for every 8-
-/// and 16-bit code in the direction to linear, and code -> linear -> code (rounded to nearest) is the identity for all
-/// of them. Both give the same bits on every processor. NaN gives NaN from the formula and zero from the tables.
+/// There are two forms. The free functions evaluate the formula (noise/math/portable_math.h) and round once.
+/// TransferCurve tabulates it. Its error is within kCurveError, relative to the larger of the value and 1e-3. To
+/// linear, it is exact for every 8- and 16-bit code. Code -> linear -> code, rounded to nearest, is the identity for
+/// all of them. Both forms give the same bits on every processor. NaN gives NaN from the formula and zero from the
+/// tables.
 #pragma once
 
 #include <array>
@@ -37,13 +38,14 @@ inline constexpr double kCurveError = 4e-5;
 float to_linear(Transfer transfer, float code);
 float from_linear(Transfer transfer, float linear);
 
-/// Lower-case name, as messages print it.
+/// The lower-case name in messages.
 std::string_view name_of(Transfer transfer);
 
-/// A curve as tables over the floating-point number line: nodes evenly spaced within each power of two, linear between.
+/// A curve as tables over floating-point numbers. Nodes are evenly spaced within each power of two. Values between them
+/// are interpolated linearly.
 class TransferCurve {
   public:
-    /// The one instance of a transfer, made at first use.
+    /// The only instance of a curve, made at first use.
     static const TransferCurve& of(Transfer transfer);
 
     bool linear() const { return transfer_ == Transfer::Linear; }
@@ -58,12 +60,13 @@ class TransferCurve {
     void to_linear(std::span<float> values) const;
     void from_linear(std::span<float> values) const;
 
-    /// Linear light of code / 255, all 256.
+    /// Linear light of all 256 codes / 255.
     std::span<const float, 256> codes8() const { return codes8_; }
-    /// Linear light of code / 65535, all 65536; made at first use.
+    /// Linear light of all 65536 codes / 65535. Made at first use.
     std::span<const float> codes16() const;
 
-    /// One direction of the curve. Odd about zero; constant beyond the last node; zero for NaN. Branch-free.
+    /// One direction of the curve. It is odd about zero, constant beyond the last node, and zero for NaN. Free of
+    /// branches.
     struct Table {
         std::int32_t low_bits = 0;   ///< bits of the first node above zero, a power of two
         std::int32_t high_bits = 0;  ///< bits of the last node
@@ -75,7 +78,7 @@ class TransferCurve {
             return blend(nodes.data(), place, x);
         }
 
-        /// Between which nodes |x| lies, and where.
+        /// The nodes between which |x| lies, and the place between them.
         struct Place {
             std::int32_t index;
             float fraction;
@@ -103,7 +106,7 @@ class TransferCurve {
     static const TransferCurve& instance();
 
     Transfer transfer_;
-    bool tabulated_ = false;  ///< false: linear, or the formula itself (KodakLog, which is not odd)
+    bool tabulated_ = false;  ///< false for Linear, and for KodakLog, which is not odd and uses the formula
     Table to_, from_;
     std::array<float, 256> codes8_{};
     mutable std::once_flag codes16_made_;

@@ -1,13 +1,13 @@
-/// Depths that mean something in the warp and in the files it reads: the nearest, the infinite, the default background.
+/// The depths that the warp and the files it reads treat in a special way.
 #pragma once
 
 namespace eikonal {
 
-/// Axial depth that nearer pixels count as [m].
+/// The least axial depth [m]. Nearer pixels count as this.
 inline constexpr float kNearestDepth = 1e-6f;
-/// Depth from which on a pixel shows background [m].
+/// Pixels of this depth or more show background [m].
 inline constexpr float kInfiniteDepth = 1e9f;
-/// Axial depth of the background where nothing states it [m].
+/// Axial depth of the background, unless something states it [m].
 inline constexpr double kDefaultFar = 1000;
 
 }  // namespace eikonal

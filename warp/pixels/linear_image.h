@@ -1,8 +1,8 @@
 /// The one form in which pictures, movie frames and the resampler exchange pixels.
 ///
-/// Convention: linear light (1 is reference white), premultiplied by alpha, row 0 on top, interleaved float32, always
-/// four lanes a pixel: R, G, B, A. A picture without alpha has A = 1; a grey one uses lane 0 only and lanes 1, 2 are 0.
-/// Pixel (x, y) has its centre at (x + 0.5, y + 0.5) in the coordinates of the display window's plane.
+/// Pixels are linear light (1 is reference white), premultiplied by alpha, interleaved float32, with row 0 on top. A
+/// pixel always has four lanes: R, G, B, A. A picture without alpha has A = 1. A grey picture uses lane 0, and lanes 1
+/// and 2 are 0. Pixel (x, y) has its centre at (x + 0.5, y + 0.5) in the coordinates of the display window's plane.
 #pragma once
 
 #include <cstddef>
@@ -18,15 +18,15 @@ struct PixelWindow {
     bool operator==(const PixelWindow&) const = default;
 };
 
-/// Pixels of the data window, and where that lies on the display window. Both windows share one coordinate system.
+/// The pixels of a data window, and its place on the display window. Both windows share one coordinate system.
 struct LinearImage {
     PixelWindow data;           ///< the pixels that exist
-    PixelWindow display;        ///< the frame as shown; may be smaller (overscan) or larger (crop) than `data`
+    PixelWindow display;        ///< the frame as shown. It may be smaller (overscan) or larger (crop) than `data`.
     double pixel_aspect = 1;    ///< width / height of a pixel
     std::vector<float> pixels;  ///< data.width * data.height * 4, lanes R G B A
 };
 
-/// The pixels of `image` on `window`, black and transparent where it has none.
+/// The pixels of `image` on `window`. Black and transparent where `image` has none.
 LinearImage cropped(const LinearImage& image, const PixelWindow& window);
 
 }  // namespace eikonal

@@ -11,12 +11,12 @@ namespace {
 
 #define EIKONAL_INLINE inline __attribute__((always_inline))
 
-/// Displacements of a row with one more pixel on either side.
+/// Displacements of a row, with one more pixel on either side.
 struct Row {
     float u[span_length + 2], v[span_length + 2];
 };
 
-/// Past the map's window the row continues linearly.
+/// The row continues linearly beyond the map's window.
 EIKONAL_INLINE void read_row(const MapView& d, int n, int x, int y, float scale, Row& row) {
     const float* p = d.data + y * d.stride + std::ptrdiff_t{2} * x;
     const int first = x > 0 ? -1 : 0, last = x + n < d.window.width ? n : n - 1;
@@ -44,7 +44,7 @@ EIKONAL_INLINE void extrapolate(const Row& near, const Row& far, int n, Row& row
     }
 }
 
-/// Monotonised-central slope from the values before, at and after, within +-1e3 pixels a pixel.
+/// Monotonised-central slope from the values before, at and after a pixel, within +-1e3 pixels a pixel.
 EIKONAL_INLINE float slope(float before, float at, float after) {
     const float b = at - before, a = after - at;
     const float limit = 2 * std::min(std::abs(b), std::abs(a)), central = 0.5f * (after - before);
@@ -52,15 +52,17 @@ EIKONAL_INLINE float slope(float before, float at, float after) {
     return std::max(-bound, std::min(central, bound));
 }
 
-/// Polygon coverage by its edges: acc holds, for each cell of a row, the change of coverage from the cell to its left.
+/// The coverage of cells by a polygon, summed over its edges. acc holds, for each cell of a row, the change of coverage
+/// from the cell to its left.
 constexpr int max_cells = 26;  // max_stretch sqrt(2) + 2 and one for the change after the last cell, rounded up
 struct Coverage {
     float change[max_cells][max_cells];
 };
 static_assert(max_cells >= max_stretch * 1.4143f + 3);
 
-/// Adds the part of a rightward step from xa to xb (xa <= xb) within one row that spans the height h (signed). Within
-/// the cell c, the area to the right of the segment counts for c and the rest, being complete from there on, for c + 1.
+/// Adds a piece of an edge within one row. It runs from xa to xb (xa <= xb) and spans the signed height h. In each cell
+/// c that it crosses, the area to the right of the piece is added to acc of c. What is missing to full coverage is
+/// added to acc of c + 1, since all later cells are covered fully.
 void add_segment(float* change, float xa, float xb, float h) {
     const int first = static_cast<int>(xa), last = static_cast<int>(xb);
     if (first == last) {
@@ -78,7 +80,7 @@ void add_segment(float* change, float xa, float xb, float h) {
     }
 }
 
-/// Adds an edge; downward edges count positive.
+/// Adds an edge. Downward edges count positive.
 void add_edge(Coverage& coverage, float x0, float y0, float x1, float y1) {
     if (y0 == y1) return;
     const float sign = y0 < y1 ? 1.0f : -1.0f;
@@ -121,7 +123,8 @@ Pixel sample_footprint(const Source& source, const Span& span, int i, float xx, 
     const std::int64_t sx = std::int64_t{span.x[i]} + static_cast<int>(left);
     const std::int64_t sy = std::int64_t{span.y[i]} + static_cast<int>(top);
     for (int c = 0; c < columns; ++c) column[c] = resolve(sx + c, source.width, source.edge);
-    const float per_area = 1 / (xx * yy - xy * xy);  // the weights sum to 1 to rounding; what is left goes at the end
+    const float per_area =
+        1 / (xx * yy - xy * xy);  // the weights sum to 1 up to rounding, and the rest is added at the end
     Pixel sum{};
     float weights = 0;
     for (int r = 0; r < rows; ++r) {

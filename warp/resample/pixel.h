@@ -1,4 +1,5 @@
-/// Inside the resampler: one pixel of 1..4 channels in a vector of four floats, and the source it is read from.
+/// One pixel of 1..4 channels in a vector of four floats, and the source that it is read from. Private to the
+/// resampler.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 
 namespace eikonal::resampling {
 
-/// Four floats; absent channels are zero. Arithmetic is per lane, so the processor's vector width changes no bit.
+/// Four floats. Absent channels are zero. Arithmetic is per lane, so the processor's vector width changes no bit.
 using Pixel = float __attribute__((vector_size(16)));
 
 template <int channels>
@@ -25,7 +26,7 @@ inline __attribute__((always_inline)) Pixel load(const float* p) {
     return pixel;
 }
 
-/// The input, its pixels addressed from (0, 0) at the upper left corner of its window.
+/// The input. Pixel (0, 0) is the upper left corner of its window.
 struct Source {
     const float* data;
     std::ptrdiff_t stride;  ///< floats
@@ -34,11 +35,11 @@ struct Source {
     Edge edge;
 
     const float* at(int x, int y) const { return at(x, y, channels); }
-    /// The same for a number of channels known when compiling.
+    /// The same for a number of channels that is known at compile time.
     const float* at(int x, int y, int pixel) const { return data + y * stride + std::ptrdiff_t{x} * pixel; }
 };
 
-/// The sample that stands at position i of an axis of n samples; -1 where it is black. Any i.
+/// The sample that stands at any position i of an axis of n samples. -1 where it is black.
 inline int resolve(std::int64_t i, int n, Edge edge) {
     if (i >= 0 && i < n) return static_cast<int>(i);
     switch (edge) {

@@ -17,7 +17,7 @@ namespace {
 
 using namespace resampling;
 
-/// Rows a task; neighbouring rows share source rows in the cache.
+/// Rows of one task. Neighbouring rows share source rows in the cache.
 constexpr int task_rows = 16;
 
 /// Floats in a cache line.
@@ -59,7 +59,7 @@ void check(const ImageView& in, const MapView& d, const MutableImageView& out) {
     if (!in.data || !d.data || !out.data) throw std::invalid_argument("resample: null pointer");
 }
 
-/// Output of this size [bytes] does not stay in a cache anyway; it is written past the caches.
+/// Output of this size [bytes] or more is written past the caches, where it would not stay anyway.
 constexpr std::int64_t streaming_size = 1 << 23;
 
 void store(const Pixel* pixels, int n, int channels, [[maybe_unused]] bool streaming, float* out) {
@@ -77,7 +77,7 @@ void store(const Pixel* pixels, int n, int channels, [[maybe_unused]] bool strea
         for (int c = 0; c < channels; ++c) out[i * channels + c] = pixels[i][c];
 }
 
-/// Streaming stores are ordered before whatever tells other threads that these rows are done.
+/// Orders streaming stores before anything that tells other threads that these rows are done.
 void finish_stores() {
 #ifdef __SSE2__
     _mm_sfence();

@@ -22,7 +22,7 @@ Pixel load_any(const Source& source, int x, int y) {
     }
 }
 
-/// sum of w[k] p[k], in the order of k: all paths must round alike, columns first and then along the row.
+/// The sum of w[k] p[k] in the order of k. All paths must round alike: first along columns, then along the row.
 template <int taps>
 EIKONAL_INLINE Pixel weigh(const Pixel* p, const float (*w)[span_length], int i) {
     Pixel sum = p[0] * w[0][i];
@@ -30,7 +30,7 @@ EIKONAL_INLINE Pixel weigh(const Pixel* p, const float (*w)[span_length], int i)
     return sum;
 }
 
-/// How far a filter may fall below its four nearest samples; nothing for the one that never does.
+/// How far a filter may fall below its four nearest samples. 0 for Bilinear, which never does.
 template <int taps>
 constexpr float kUndershoot = taps == 4 ? cubic_undershoot : lanczos3_undershoot;
 
@@ -45,7 +45,7 @@ EIKONAL_INLINE Pixel limit_undershoot(Pixel value, Pixel nearest) {
     return value < low ? low : value;
 }
 
-/// Any pixel: samples outside follow the edge mode, an axis with an integer displacement is not filtered.
+/// Filters any pixel. Samples outside follow the edge mode. An axis with an integer displacement is not filtered.
 template <int taps>
 Pixel sample_careful(const Source& source, const Span& span, int i) {
     constexpr int before = taps / 2 - 1;
@@ -70,7 +70,7 @@ Pixel sample_careful(const Source& source, const Span& span, int i) {
 /// Two neighbouring pixels of four channels.
 using Pair = float __attribute__((vector_size(32)));
 
-/// A pixel whose samples all lie inside and whose fractions are not zero.
+/// Filters a pixel whose samples all lie inside and whose fractions are not zero.
 template <int taps, int channels>
 EIKONAL_INLINE Pixel sample_inside(const Source& source, const Span& span, int i) {
     constexpr int before = taps / 2 - 1;

@@ -68,14 +68,14 @@ EIKONAL_INLINE void lanczos3_weights(const float* t, float (*w)[span_length]) {
 
 EIKONAL_CLONES void prepare(const float* d, int n, int x, int y, float scale, Filter filter, const Source& source,
                             Span& span) {
-    // Always a whole span, so that the loops have constant length: a short one repeats its last displacement.
+    // The loops have constant length, so a short span repeats its last displacement.
     alignas(64) float both[2 * span_length], u[span_length], v[span_length];
     const float* from = d;
     if (n < span_length) {
         for (int i = 0; i < 2 * span_length; ++i) both[i] = d[i < 2 * n ? i : 2 * n - 2 + i % 2];
         from = both;
     }
-    // The bits of |d| order like |d|, and NaN is largest.
+    // The bits of |d| are ordered as |d| is, and NaN is the largest.
     std::uint32_t largest = 0;
     for (int i = 0; i < 2 * span_length; ++i) {
         both[i] = from[i] * scale;

@@ -1,6 +1,8 @@
-/// Inside the resampler: up to 64 neighbouring output pixels of one row, their source positions split into integer and
-/// fraction, and the weights of a separable filter at those fractions. The unit of work: small enough for the first
-/// cache, long enough to vectorise over and to decide once whether any sample lies outside the source.
+/// A span: up to 64 neighbouring output pixels of one row. It holds their source positions, split into integer and
+/// fraction, and the weights of a separable filter at those fractions. Private to the resampler.
+///
+/// The span is the unit of work. It is small enough for the first cache. It is long enough to vectorise over, and to
+/// decide once whether any sample lies outside the source.
 #pragma once
 
 #include "warp/resample/pixel.h"
@@ -10,12 +12,13 @@ namespace eikonal::resampling {
 inline constexpr int span_length = 64;
 inline constexpr int max_taps = 6;
 
-/// Samples an axis of a filter; they stand at -(taps/2 - 1) ... taps/2 from the integer position. Area: where rigid.
+/// The samples of a filter along one axis. They stand at -(taps/2 - 1) ... taps/2 from the integer position. (Area:
+/// where the map is rigid.)
 constexpr int taps_of(Filter filter) {
     return filter == Filter::Cubic ? 4 : filter == Filter::Lanczos3 ? 6 : 2;
 }
 
-/// Structure of arrays; elements from n on are undefined.
+/// A structure of arrays. Elements from n on are undefined.
 struct alignas(64) Span {
     int n;
     bool interior;                           ///< every sample of every pixel lies inside the source
@@ -26,8 +29,8 @@ struct alignas(64) Span {
     float wy[max_taps][span_length];         ///< top to bottom
 };
 
-/// A displacement as it counts: zero if a component is not finite, else clamped to +-max_displacement. (No branches,
-/// here and below, so that loops over a span vectorise.)
+/// Sets a displacement to zero if a component is not finite, else clamps it to +-max_displacement. It and `split` are
+/// free of branches, so that loops over a span vectorise.
 inline void sanitise(float& u, float& v) {
     const bool finite = (u - u) + (v - v) == 0;  // inf - inf is NaN
     const float a = finite ? u : 0, b = finite ? v : 0;
@@ -37,8 +40,8 @@ inline void sanitise(float& u, float& v) {
     v = b_low > max_displacement ? max_displacement : b_low;
 }
 
-/// Integer part of a sanitised displacement; the fraction replaces d. Exact, but for |d| so small that 1 - |d| rounds
-/// to 1: that is an integer.
+/// Returns the integer part of a sanitised displacement and replaces d by its fraction. Exact, unless d is negative and
+/// so small that 1 - |d| rounds to 1. Such a d counts as an integer.
 inline int split(float& d) {
     const int toward_zero = static_cast<int>(d);
     const int below = toward_zero - (static_cast<float>(toward_zero) > d ? 1 : 0);
@@ -47,7 +50,8 @@ inline int split(float& d) {
     return below + (t < 1 ? 0 : 1);
 }
 
-/// Fills the span for n pixels from (x, y) on, counted from the source's corner; d: their (u, v), times `scale`.
+/// Fills the span for n pixels from (x, y) on, which count from the source's corner. Their displacements are d times
+/// `scale`, as (u, v).
 void prepare(const float* d, int n, int x, int y, float scale, Filter filter, const Source& source, Span& span);
 
 }  // namespace eikonal::resampling

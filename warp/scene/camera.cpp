@@ -60,10 +60,10 @@ std::optional<std::array<dvec3, 3>> view_axes(dvec3 position, dvec3 look_at, dve
 CameraPath::CameraPath(const CameraSpec& spec, int width, int height, double pixel_aspect, std::optional<double> fov)
     : height_(height), own_fov_(fov || spec.projection == Projection::Orthographic) {
     if (fov && spec.projection == Projection::Orthographic)
-        throw UserError("--fov: an orthographic camera has no field of view; set camera.width");
+        throw UserError("`fov`: an orthographic camera has no field of view; set camera.width");
     if (fov && !(*fov >= kSmallestFov && *fov <= kLargestFov))
         throw UserError(
-            fmt::format("--fov: value {}, must be >= {} and <= {} degrees", *fov, kSmallestFov, kLargestFov));
+            fmt::format("`fov`: value {}, must be >= {} and <= {} degrees", *fov, kSmallestFov, kLargestFov));
     const auto axes = view_axes(spec.position, spec.look_at, spec.up);
     if (!axes) throw UserError("camera: look_at must differ from position, and up must not be parallel to the view");
 

@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kInstalled = "share/eikonal/presets";
+/// Folders between an installed file and the prefix: bin, lib, lib/x86_64-linux-gnu.
+constexpr int kDeepest = 2;
+
+/// The shared library that holds this code; nothing reliable in a program that links it statically.
+fs::path own_file() {
+    Dl_info info{};
+    return dladdr(reinterpret_cast<const void*>(&list_presets), &info) != 0 && info.dli_fname ? info.dli_fname : "";
+}
+
+/// The presets' folder under the prefix that `file` is installed in; empty if there is none.
+fs::path installed_beside(const fs::path& file) {
+    std::error_code ignored;
+    fs::path prefix = fs::absolute(file, ignored).parent_path();
+    for (int i = 0; i < kDeepest; ++i) {
+        prefix = prefix.parent_path();
+        if (fs::is_directory(prefix / kInstalled, ignored)) return prefix / kInstalled;
+    }
+    return {};
+}
+
 fs::path presets_folder() {
     std::error_code ignored;
     if (const char* samples = std::getenv("EIKONAL_SAMPLES"); samples && *samples) {
@@ -22,14 +44,14 @@ fs::path presets_folder() {
             throw UserError(fmt::format("EIKONAL_SAMPLES={}: there is no folder '{}'", samples, folder.string()));
         return folder;
     }
+    for (const fs::path& file : {own_file(), fs::read_symlink("/proc/self/exe", ignored)})
+        if (const fs::path folder = installed_beside(file); !folder.empty()) return folder;
     const fs::path built = fs::path(EIKONAL_SAMPLES_DIR) / "presets";
     if (fs::is_directory(built, ignored)) return built;
-    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    const fs::path installed = program.parent_path().parent_path() / "share/eikonal/presets";
-    if (fs::is_directory(installed, ignored)) return installed;
-    throw UserError(
-        fmt::format("no presets: neither '{}' nor '{}' is a folder; set EIKONAL_SAMPLES to the samples folder",
-                    built.string(), installed.string()));
+    throw UserError(fmt::format(
+        "no presets: '{}' is no folder, and '{}' is in no folder above the program; set EIKONAL_SAMPLES to the samples "
+        "folder",
+        built.string(), kInstalled));
 }
 
 std::string first_comment(const fs::path& file) {
@@ -61,7 +83,7 @@ fs::path find_preset(const std::string& name) {
         return names;
     }();
     throw UserError(
-        scene_file::printable(fmt::format("--preset {}: no such preset{}", name, scene_file::suggestion(name, valid))));
+        scene_file::printable(fmt::format("`preset` {}: no such preset{}", name, scene_file::suggestion(name, valid))));
 }
 
 }  // namespace eikonal

@@ -1,9 +1,11 @@
 #include "warp/scene/scene.h"
 
 #include "noise/math/random.h"
+#include "noise/medium/keys.h"
 #include "warp/scene/schema.h"
 #include "warp/scene/settings.h"
 #include "warp/scene/text_file.h"
+#include "warp/scene/toml_reader.h"
 
 namespace eikonal {
 
@@ -11,15 +13,8 @@ namespace {
 
 /// Every medium draws its own numbers, even where the file gives all the same seed.
 void mix_seeds(Scene& scene, std::uint64_t scene_seed) {
-    for (std::size_t i = 0; i < scene.media.size(); ++i) {
-        const RandomStream stream(scene_seed, "medium", i);
-        if (auto* turbulence = std::get_if<TurbulenceSpec>(&scene.media[i]))
-            turbulence->seed = stream.bits(turbulence->seed);
-        if (auto* blobs = std::get_if<BlobsSpec>(&scene.media[i])) {
-            blobs->seed = stream.bits(blobs->seed);
-            if (blobs->wind) blobs->wind->seed = stream.bits(blobs->wind->seed);
-        }
-    }
+    for (std::size_t i = 0; i < scene.media.size(); ++i)
+        scene.media[i].mix_seeds(RandomStream(scene_seed, "medium", i));
 }
 
 }  // namespace
@@ -29,7 +24,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& name, cons
     const toml::table root = scene_file::parse_root(text, name.string(), settings);
     Scene scene;
     scene.file = name;
-    scene_file::read_scene({root, "", scene.file}, scene);
+    scene_file::TomlReader({root, "", scene.file}).read_table(keys(scene));
     mix_seeds(scene, seed.value_or(0));
     return scene;
 }

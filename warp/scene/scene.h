@@ -3,9 +3,9 @@
 /// is a scene without media: nothing moves.
 ///
 /// Units: metres, seconds, kelvin; degrees and millimetres only where the name says so. World axes right-handed, y up.
-/// Range: every number is finite, at most kLargestValue in magnitude, and what must be positive at least
-/// kSmallestPositive. Errors: UserError, one line "file:line: key: what is wrong, what is allowed, the nearest valid
-/// name". Unknown keys, keys that do not apply beside what others say, and contradictions are errors.
+/// Range: every number is finite and within the limits of noise/medium/number_limits.h. Errors: UserError, one line
+/// "file:line: key: what is wrong, what is allowed, the nearest valid name". Unknown keys, keys that do not apply
+/// beside what others say, and contradictions are errors.
 #pragma once
 
 #include <array>
@@ -16,15 +16,13 @@
 #include <string_view>
 #include <vector>
 
-#include "noise/medium/media.h"
+#include "noise/medium/medium_spec.h"
+#include "noise/medium/number_limits.h"
+#include "noise/medium/optics.h"
 
 namespace eikonal {
 
 enum class Projection { Perspective, Orthographic };
-
-/// Range of every number of a scene, so that squares and quotients of two of them stay within double.
-inline constexpr double kLargestValue = 1e12;       ///< in magnitude
-inline constexpr double kSmallestPositive = 1e-12;  ///< of what must be > 0
 
 /// Of scenes and footage that state none: frames a second.
 inline constexpr double kDefaultFps = 24;
@@ -134,8 +132,8 @@ struct Preset {
 };
 
 /// Every preset, sorted by name. They are in the folder `presets` of the folder that the environment variable
-/// EIKONAL_SAMPLES names, or else of the source tree that the program was built from, or else of ../share/eikonal
-/// beside the program's own folder. Throws UserError if there is none of these.
+/// EIKONAL_SAMPLES names, or else in share/eikonal/presets of the prefix that the library or program is installed in,
+/// or else in the source tree that it was built from. Throws UserError if there is none of these.
 std::vector<Preset> list_presets();
 
 /// The file of a preset; UserError that names the nearest ones if there is none.

@@ -7,8 +7,8 @@
 
 #include "noise/base/error.h"
 #include "warp/scene/settings.h"
-#include "warp/scene/table.h"
 #include "warp/scene/text_file.h"
+#include "warp/scene/toml_reader.h"
 
 namespace eikonal {
 namespace {

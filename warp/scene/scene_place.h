@@ -10,7 +10,7 @@
 namespace eikonal {
 
 /// A message that begins with a scene's key, "medium.0.source.1.rate = …", with the place of that key before it:
-/// "scene.toml:12: …", or "--set medium.0.source.1.rate=…: …" where an option has given it; of a key that is left out,
+/// "scene.toml:12: …", or "`set` medium.0.source.1.rate=…: …" where a setting has given it; of a key that is left out,
 /// the place of what it belongs to. Any other message as it is. file, settings: as read_scene was given them. Reads
 /// the file again; never throws.
 std::string with_place(std::string_view message, const std::filesystem::path& file,

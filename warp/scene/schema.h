@@ -1,17 +1,13 @@
-/// The keys of every table of a scene file: the one list of their names, meanings, ranges and contradictions.
-/// Internal to the scene reader.
+/// The keys of a whole scene: the root of the one list of all keys, which the scene reader and whoever shows keys use.
+/// The keys of a medium are beside its parameters, under noise/.
 #pragma once
 
+#include "noise/medium/key_reader.h"
 #include "warp/scene/scene.h"
-#include "warp/scene/table.h"
 
-namespace eikonal::scene_file {
+namespace eikonal {
 
-/// Sizes for which FFTW has a fast transform are 2 … kLargestLattice without a prime factor above kLargestFactor.
-inline constexpr int kLargestFactor = 13;
-inline constexpr int kLargestLattice = 65536;
+/// The keys of the root table. They refer to the scene, which must outlive them.
+Keys keys(Scene& scene);
 
-/// Reads the scene whose file's root table is `root`. Throws UserError.
-void read_scene(const Entry& root, Scene& scene);
-
-}  // namespace eikonal::scene_file
+}  // namespace eikonal

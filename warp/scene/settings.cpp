@@ -11,8 +11,8 @@
 
 #include "noise/base/error.h"
 #include "warp/scene/message.h"
-#include "warp/scene/table.h"
 #include "warp/scene/toml_guard.h"
+#include "warp/scene/toml_reader.h"
 
 namespace eikonal::scene_file {
 
@@ -22,7 +22,7 @@ constexpr std::string_view kValue = "v";  // the key under which Setting::parsed
 
 /// One setting being applied.
 struct Setting {
-    std::string option;  // "--set KEY=VALUE", as messages and sources name it
+    std::string option;  // "`set` KEY=VALUE", as messages and sources name it
     toml::source_region source;
 
     [[noreturn]] void fail(std::string_view what) const {
@@ -114,7 +114,7 @@ toml::table parsed_value(const Setting& setting, const std::string& value) {
 }  // namespace
 
 void apply_setting(toml::table& root, const std::string& text) {
-    Setting setting{"--set " + text, {}};
+    Setting setting{"`set` " + text, {}};
     setting.source.path = std::make_shared<const std::string>(setting.option);
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) setting.fail("must be KEY=VALUE, such as medium.0.cn2=1e-13");

@@ -10,6 +10,7 @@
 #include "noise/math/random.h"
 #include "noise/turbulence/parameters/falloff.h"
 #include "noise/turbulence/parameters/spectrum.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
@@ -30,7 +31,7 @@ double spectrum_variance(const TurbulenceSpec& spec, double lowest) {
     return sum * (last - first) / (3 * n);
 }
 
-/// Rows of a rotation, uniform over all rotations, from a random unit quaternion.
+/// Rows of a random rotation, uniform over all rotations, from a random unit quaternion.
 std::array<dvec3, 3> random_rotation(const RandomStream& stream) {
     double w, x, y, z;
     stream.gaussians(0, w, x);
@@ -42,7 +43,7 @@ std::array<dvec3, 3> random_rotation(const RandomStream& stream) {
             dvec3{2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
 }
 
-/// Cell and offset within it of one coordinate, and the fade there with its derivatives.
+/// The cell of one coordinate, the offset within it, and the fade there with its derivatives.
 struct Coordinate {
     std::int64_t cell;
     double t, fade, slope, curvature;
@@ -55,7 +56,7 @@ Coordinate locate(double u) {
             60 * t * (t - 1) * (2 * t - 1)};
 }
 
-/// N, its gradient and, if `second`, its Hessian in the first three coordinates, in cells.
+/// N, its gradient [1/cell] and, if `second`, its Hessian [1/cell²] in the first three coordinates.
 template <bool second>
 IndexJet noise4(const std::array<double, 4>& u, std::uint64_t key) {
     constexpr std::array<std::uint64_t, 4> kPrime{0x9e3779b97f4a7c15ULL, 0xc2b2ae3d27d4eb4fULL, 0x165667b19e3779f9ULL,
@@ -74,7 +75,7 @@ IndexJet noise4(const std::array<double, 4>& u, std::uint64_t key) {
             dw[i] = far ? c[i].slope : -c[i].slope;
             ddw[i] = far ? c[i].curvature : -c[i].curvature;
         }
-        // One of 32 gradients: three components ±1, the fourth 0.
+        // One of 32 gradients: three components are ±1, and the fourth is 0.
         const std::uint64_t bits = mix64(h);
         std::array<double, 4> g;
         for (std::size_t i = 0; i < 4; ++i) g[i] = (bits >> (8 + i)) & 1U ? 1.0 : -1.0;
@@ -86,7 +87,7 @@ IndexJet noise4(const std::array<double, 4>& u, std::uint64_t key) {
         sum.gradient.y += weight * g[1] + w[0] * dw[1] * w23 * ramp;
         sum.gradient.z += weight * g[2] + w01 * dw[2] * w[3] * ramp;
         if constexpr (second) {
-            // ∂a∂b (weight ramp), the ramp being linear
+            // The second derivative of weight · ramp. The ramp is linear.
             const dvec3 slope(dw[0] * w[1] * w23, w[0] * dw[1] * w23, w01 * dw[2] * w[3]), ramps(g[0], g[1], g[2]);
             const double xy = dw[0] * dw[1] * w23, xz = dw[0] * w[1] * dw[2] * w[3], yz = w[0] * dw[1] * dw[2] * w[3];
             const glm::dmat3 weights(ddw[0] * w[1] * w23, xy, xz, xy, w[0] * ddw[1] * w23, yz, xz, yz,

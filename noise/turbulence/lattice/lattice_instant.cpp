@@ -1,18 +1,9 @@
 #include "noise/turbulence/lattice/lattice_instant.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
-#include <tuple>
-#include <utility>
 
-#include "noise/base/instruction_sets.h"
-#include "noise/math/cubic_taps.h"
 #include "noise/math/portable_math.h"
 
 namespace eikonal {
@@ -26,7 +17,7 @@ std::array<int, 3> spatial_size(const LatticeGeometry& g) {
 
 SplineError lattice_spline_error(const LatticeField& field, int padding) {
     const LatticeGeometry& g = field.geometry();
-    // Squared errors of value and slope of the spline along each axis.
+    // Squared errors of the spline's value and slope along each axis.
     std::array<std::vector<double>, 3> value, slope;
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (int m = 0; m <= largest_bending_mode(g.size[axis]); ++m) {

@@ -1,17 +1,16 @@
-/// One instant of a lattice field as continuous functions, and as node values.
+/// One instant of a lattice field, as continuous functions and as node values.
 ///
-/// The continuous n is what bends light: the lattice's n less its Nyquist modes of space, which have no force
-/// (lattice.h), so that index and gradient along a ray are of one function. It is a periodic cubic B-spline whose
-/// coefficients are the lattice spectrum divided by the spline's own transfer (prefilter in Fourier space), so that it
-/// passes through the node values exactly: C² in n, C¹ in its gradient, and the gradient is the exact derivative of the
-/// interpolated n, hence free of curl. Falloff (PHYSICS.md#turbulence, Fig. 6) multiplies the potential: n g, with
-/// gradient g ∇n + n ∇g, hence curl-free as well (∇g jumps where the falloff begins, h = 0).
+/// The continuous n is the n that bends light: it leaves out the lattice's Nyquist modes of space (lattice.h). It is
+/// the periodic cubic B-spline through the node values (noise/math/periodic_spline3.h, which states its error). n and
+/// its first two derivatives are continuous. The gradient is the exact derivative of the interpolated n, so it has no
+/// curl.
 ///
-/// Interpolation error against the trigonometric sum, in rms and relative to the mode, for a mode with τ turns a cell
-/// along an axis: spline_error(τ) for n, spline_slope_error(τ) for its derivative there (both known in closed form and
-/// tested, tests/lattice_test.cpp). `padding` p > 1 evaluates the trigonometric sum on a lattice p times finer first,
-/// which costs p³ in memory and divides τ by p; each axis may have its own. (τ: n, slope) 1/2: 0.7, 0.7;
-/// 3/8: 0.17, 0.23; 1/4: 0.019, 0.04; 1/8: 8e-4, 3e-3; 1/16: 4e-5, 4e-4.
+/// Falloff g (PHYSICS.md#turbulence, Fig. 6) multiplies n. The gradient is g ∇n + n ∇g, which has no curl either. ∇g
+/// jumps where the falloff begins, at h = 0.
+///
+/// `padding` p evaluates the trigonometric sum on a lattice p times finer before the spline is fitted. It makes the
+/// spline more exact and costs p³ in memory. Each axis may have its own p.
+/// Theory: PHYSICS.md#lattice, #spline.
 #pragma once
 
 #include <algorithm>
@@ -21,31 +20,34 @@
 #include "noise/math/periodic_spline3.h"
 #include "noise/turbulence/lattice/lattice.h"
 #include "noise/turbulence/parameters/falloff.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 
-/// Expected rms errors of a snapshot's gradient, without falloff: discrete sums over the lattice's modes.
+/// Expected rms errors of an instant's gradient, without falloff: discrete sums over the lattice's modes.
 struct SplineError {
     double slope = 0;  ///< relative to the rms gradient
-    /// Of the gradient's integral along a straight ray, across it, after 1 m [m^-1/2]; it grows as the root of the
-    /// way. A wave adds up only on rays along its crests: π <e²>/k over all directions, of a wave whose gradient is
-    /// off by e. Rays near an axis, along which aliases have crests too, are off by that; oblique ones by half. *added*
+    /// Error of the gradient's integral along a straight ray, across the ray, after 1 m [m^-1/2]. It grows as the root
+    /// of the way. A wave's error adds up only on rays along its crests. Over all directions the mean square is
+    /// π <e²>/k for a wave whose gradient is off by e. It is reached by rays near an axis, where aliases have crests
+    /// too. Oblique rays are off by half as much. *added*
     double bend = 0;
 };
-/// With cells of l0/2 (von Kármán) and padding 1, 2, 3, 4 the slope's are 0.19, 0.0096, 0.0022, 8.4e-4.
+/// With cells of l0/2 (von Kármán), padding by 1, 2, 3 and 4 gives slopes of 0.19, 0.0096, 0.0022 and 8.4e-4.
 SplineError lattice_spline_error(const LatticeField& field, int padding);
 
-/// n - n_ambient (less Nyquist modes) and its gradient at one instant, with falloff. Immutable, thread-safe.
+/// n - n_ambient without Nyquist modes, with falloff, at one instant. Immutable, thread-safe.
 class LatticeInstant {
   public:
-    /// t [s]; padding >= 1 (see above).
+    /// t: time [s]. padding: see above, >= 1.
     LatticeInstant(const LatticeField& field, double t, int padding = 1);
     LatticeInstant(const LatticeField& field, double t, const Padding& padding);
 
-    /// At world position x [m]; periodic but for the falloff.
+    /// At world position x [m]. Periodic, except for the falloff.
     IndexSample sample(const dvec3& x) const;
-    /// The same in double precision throughout, and with the Hessian: the tracer's.
+    /// The same in double precision throughout, for integrators of high order.
     IndexSample smooth_sample(const dvec3& x) const;
+    /// With the Hessian, in double precision throughout.
     IndexJet jet(const dvec3& x) const;
 
     /// Bounds of n - n_ambient anywhere.
@@ -62,8 +64,9 @@ class LatticeInstant {
     PeriodicSpline3 spline_;
 };
 
-/// Node values at time t, nx × ny × nz row-major, node (i, j, l) at world (i Lx/nx, j Ly/ny, l Lz/nz): n - n_ambient,
-/// Nyquist modes included, or an exact component of the force (bending spectrum times ik), both with falloff.
+/// Node values at time t with falloff, nx × ny × nz, row-major. Node (i, j, l) lies at world position
+/// (i Lx/nx, j Ly/ny, l Lz/nz). The index includes Nyquist modes. A component of the force is exact: the bending
+/// spectrum times ik.
 FftVector<float> node_field(const LatticeField& field, double t, Component what);
 
 }  // namespace eikonal

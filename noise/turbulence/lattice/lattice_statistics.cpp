@@ -1,4 +1,5 @@
-/// What a lattice is expected to do, as discrete sums over its modes, and what it costs; nothing here draws a number.
+/// What a lattice is expected to do, as discrete sums over its modes, and what it costs. No random number is drawn
+/// here.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "noise/math/portable_math.h"
 #include "noise/turbulence/lattice/lattice.h"
 #include "noise/turbulence/lattice/path_kernel.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
@@ -18,10 +20,11 @@ constexpr double kDefaultOuterScales = 2;       ///< periods in L0
 constexpr double kDefaultCorrelationTimes = 4;  ///< T in correlation times of the largest eddies
 constexpr int kDefaultTimes = 32;
 constexpr int kDefaultPaperSize = 32;
-/// nz nt: the modes of a row are counted by an int, and by the 32 bits of a random counter.
+/// Bound of nz nt. An int, and the 32 bits of a random counter, count the modes of a row.
 constexpr double kLongestRow = 2e9;
 
-/// Calls action(m, modes) for every |m| of the lattice up to `last` along each axis; `modes` signed modes share it.
+/// Calls action(m, modes) for every |m| of the lattice up to `last` along each axis. `modes`: how many signed modes
+/// share it.
 template <class Action>
 void for_each_octant_mode(const LatticeGeometry& g, const std::array<int, 3>& last, Action&& action) {
     const auto signs = [](int m, int n) { return m == 0 || is_nyquist(m, n) ? 1.0 : 2.0; };
@@ -32,7 +35,7 @@ void for_each_octant_mode(const LatticeGeometry& g, const std::array<int, 3>& la
                        signs(mx, g.size[0]) * signs(my, g.size[1]) * signs(mz, g.size[2]));
 }
 
-/// The same of every mode, and of those that bend light.
+/// Calls action for every mode, or for those that bend light.
 template <class Action>
 void for_each_mode(const LatticeGeometry& g, Action&& action) {
     for_each_octant_mode(g, {g.size[0] / 2, g.size[1] / 2, g.size[2] / 2}, action);
@@ -58,7 +61,7 @@ LatticeGeometry choose_lattice(const TurbulenceSpec& spec) {
     LatticeGeometry g;
     const bool von_karman = spec.spectrum == SpectrumKind::VonKarman;
     const double length = kDefaultOuterScales * spec.outer_scale;
-    // correlation time 2/(√α k0) of an eddy of wavenumber k0 = 2π/L0
+    // The correlation time of an eddy of wavenumber k0 = 2π/L0 is 2/(√α k0).
     const double time =
         spec.alpha > 0 ? kDefaultCorrelationTimes * spec.outer_scale / (portable::kPi * std::sqrt(spec.alpha)) : 1;
     g.period = spec.period.value_or(std::array<double, 4>{length, length, length, time});
@@ -78,7 +81,7 @@ std::uint64_t lattice_bytes(const TurbulenceSpec& spec, const LatticeGeometry& g
     const double samples = double(g.size[0]) * g.size[1] * g.size[2];
     const double modes = double(g.size[0]) * g.size[1] * g.half();
     const double terms = spec.alpha > 0 ? 1 + 2.0 * (g.size[3] / 2) : 1;
-    // amplitudes; an instant's spectrum and the copy its transform destroys; spline; n, F.x, F.y, F.z at the nodes
+    // Amplitudes, an instant's spectrum and the copy that its transform destroys; the spline, and n and F at the nodes.
     const double bytes = modes * sizeof(complex32) * (terms + 2) + samples * sizeof(float) * 5;
     return bytes < 0x1p64 ? static_cast<std::uint64_t>(bytes) : std::numeric_limits<std::uint64_t>::max();
 }

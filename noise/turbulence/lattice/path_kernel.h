@@ -4,10 +4,11 @@
 ///     h(k, u)  = ∫₀^u (u - w) e^{ikw} dw = (1 + iku - e^{iku})/k²      [m²]
 ///     h'(k, u) = dh/du = ∫₀^u e^{ikw} dw = (e^{iku} - 1)/(ik)          [m]
 ///
-/// so that a mode's force F̂ e^{ik(z0 + w)} displaces the ray by F̂ e^{ik z0} h and bends it by F̂ e^{ik z0} h'.
-/// k [rad/m] along the ray and of either sign, u [m]; h(-k, u) is the conjugate of h(k, u). Valid for all finite k and
-/// u whose result fits a double; relative error of the complex value at most kPathKernelError
-/// (tests/path_tables_test.cpp), where ku itself is taken as rounded: beyond |ku| ~ 1e3 that rounding is the larger.
+/// A mode's force F̂ e^{ik(z0 + w)} displaces the ray by F̂ e^{ik z0} h and bends it by F̂ e^{ik z0} h'.
+/// k: wavenumber along the ray [rad/m], of either sign. u: path [m]. h(-k, u) is the conjugate of h(k, u).
+/// Range: all finite k and u whose result fits a double. The relative error of the complex value is at most
+/// kPathKernelError (tests/noise/turbulence/path_tables_test.cpp) for the product ku as rounded. Beyond |ku| ~ 1e3 the
+/// rounding of ku is the larger error.
 #pragma once
 
 #include <cmath>
@@ -21,7 +22,7 @@ inline constexpr double kPathKernelError = 1e-14;
 
 namespace detail {
 
-/// sin and cos of θ/2 for any finite or infinite θ; an angle whose phase a double cannot hold counts as whole turns.
+/// sin and cos of θ/2 for any finite or infinite θ. An angle whose phase a double cannot hold counts as whole turns.
 inline void half_angle(double theta, double& s, double& c) {
     double turns = theta / (2 * portable::kTwoPi);
     if (std::abs(turns) > 0x1p40) turns = std::isfinite(turns) ? turns - std::floor(turns) : 0;
@@ -33,7 +34,7 @@ inline void half_angle(double theta, double& s, double& c) {
 inline std::complex<double> path_kernel(double k, double u) {
     const double theta = k * u;
     if (std::abs(theta) < 1) {
-        // u² Σ_m (iθ)^m / (m + 2)!, split into real and imaginary parts
+        // The series u² Σ_m (iθ)^m / (m + 2)!, split into real and imaginary parts.
         const double t2 = theta * theta;
         double re = 0, im = 0;
         for (int m = 16; m >= 0; m -= 2) {

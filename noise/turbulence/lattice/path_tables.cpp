@@ -16,11 +16,11 @@
 namespace eikonal {
 namespace {
 
-/// Part of the tolerance left to the splines' expected error; the rest is rounding and chance.
+/// Part of the tolerance that the splines' expected error may take. Rounding and chance take the rest.
 constexpr double kSplineShare = 0.5;
-constexpr int kLanes = 8;  ///< partial sums of a dot product, in a fixed order on every processor
+constexpr int kLanes = 8;  ///< partial sums of a dot product. Their order is the same on every processor.
 
-/// Factors along the ray axis for several outputs at once: value[output][re, im][bin], rows padded with zeros.
+/// Factors along the ray axis for several outputs: value[output][re, im][bin]. Rows are padded with zeros.
 struct Kernels {
     int outputs, bins, stride;
     std::vector<float> value;
@@ -38,8 +38,8 @@ struct Kernels {
     }
 };
 
-/// H(k∥) = e^{ik∥z0} kernel(sign k∥) for each bin of the ray axis (Nyquist's has no modes). Along z only half the bins
-/// are stored: the other half is added as the mirrored conjugate, hence ½ where it is its own.
+/// H(k∥) = e^{ik∥z0} kernel(sign k∥) for each bin of the ray axis. (The Nyquist bin has no modes.) Along z only half of
+/// the bins are stored. sum_along adds the other half as mirrored conjugates, so a bin that is its own mirror gets ½.
 template <class Kernel>
 void fill_kernel(const LatticeGeometry& g, const PathRays& rays, double z0, Kernel&& kernel, float* re, float* im) {
     const int n = g.size[rays.axis], bins = rays.axis == 2 ? g.half() : n;
@@ -99,7 +99,7 @@ void dot_row(int n, const float* __restrict hr, const float* __restrict hi, cons
     }
 }
 
-/// Sums over ix or iy: whole rows at a time.
+/// Sums over ix or iy, whole rows at a time.
 void sum_across(const LatticeGeometry& g, const FftVector<complex32>& spectrum, int axis, const Kernels& kernels,
                 std::vector<FftVector<complex32>>& out) {
     const int half = g.half(), rows = g.size[axis == 0 ? 1 : 0];
@@ -129,13 +129,13 @@ void sum_across(const LatticeGeometry& g, const FftVector<complex32>& spectrum, 
     });
 }
 
-/// Sums over iz, within rows: half of the modes, then the mirrored conjugate for the rest.
+/// Sums over iz within rows: half of the modes, then the mirrored conjugates for the rest.
 void sum_along(const LatticeGeometry& g, const FftVector<complex32>& spectrum, const Kernels& kernels,
                std::vector<FftVector<complex32>>& out) {
     const int nx = g.size[0], ny = g.size[1], half = g.half();
     const auto plane = static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny);
     const auto outputs = static_cast<std::size_t>(kernels.outputs);
-    FftScratch<complex32> sums(plane * outputs);  // the outputs of a row side by side
+    FftScratch<complex32> sums(plane * outputs);  // the outputs of one row lie side by side
     tbb::parallel_for(tbb::blocked_range<int>(0, nx), [&](const tbb::blocked_range<int>& range) {
         std::vector<float> re(static_cast<std::size_t>(kernels.stride)), im(static_cast<std::size_t>(kernels.stride));
         for (int ix = range.begin(); ix < range.end(); ++ix)
@@ -168,7 +168,7 @@ std::array<int, 2> lateral_size(const LatticeGeometry& g, const PathRays& rays) 
     return {g.size[rays.lateral()[0]], g.size[rays.lateral()[1]]};
 }
 
-/// Lateral half-complex spectra of n weighted along the rays by each kernel, aperture applied.
+/// Lateral half-complex spectra of n, weighted along the rays by each kernel, with the aperture.
 std::vector<FftVector<complex32>> lateral_spectra(const LatticeGeometry& g, const FftVector<complex32>& spectrum,
                                                   const PathRays& rays, const Kernels& kernels) {
     const std::array<int, 2> size = lateral_size(g, rays);
@@ -192,7 +192,7 @@ std::vector<FftVector<complex32>> lateral_spectra(const LatticeGeometry& g, cons
     return out;
 }
 
-/// Derivative of a lateral spectrum along lateral axis e.
+/// The derivative of a lateral spectrum along lateral axis e.
 FftVector<complex32> differentiate(const FftVector<complex32>& spectrum, const LatticeGeometry& g, const PathRays& rays,
                                    int e) {
     const std::array<int, 2> size = lateral_size(g, rays);
@@ -212,7 +212,7 @@ SplinePlan2 spline_plan(const LatticeGeometry& g, const PathRays& rays, int padd
     return {size[0], size[1], padding};
 }
 
-/// Splines over the lateral axes, in periods.
+/// Makes splines over the lateral axes, whose arguments are periods.
 struct Splines {
     const SplinePlan2& plan;
     const LatticeGeometry& g;
@@ -224,8 +224,8 @@ struct Splines {
     }
 };
 
-/// Σ over lateral modes of slope² power: variance of the two components; and of the error of splines on a lattice
-/// `padding` times finer. power(k∥) weights the ray axis.
+/// The variance of the two lateral components, and of the error of splines on a lattice `padding` times finer: sums of
+/// slope² power over the lateral modes. power(k∥) weights the ray axis.
 struct LateralVariance {
     std::array<double, 2> value{}, error{};
 };

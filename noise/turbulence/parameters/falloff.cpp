@@ -4,6 +4,7 @@
 #include <glm/matrix.hpp>
 
 #include "noise/math/portable_math.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 

@@ -1,10 +1,11 @@
 /// How the strength of turbulence falls with height above a heat source, and the product with a field's own values.
+/// Theory: PHYSICS.md#turbulence.
 #pragma once
 
 #include <optional>
 
 #include "noise/math/index_sample.h"
-#include "noise/medium/media.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 

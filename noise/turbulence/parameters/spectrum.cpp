@@ -1,6 +1,7 @@
 #include "noise/turbulence/parameters/spectrum.h"
 
 #include "noise/math/portable_math.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 

@@ -5,7 +5,7 @@
 /// sum, never with the continuum.
 #pragma once
 
-#include "noise/medium/media.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 

@@ -10,11 +10,12 @@
 #include "noise/math/bessel.h"
 #include "noise/math/portable_math.h"
 #include "noise/math/random.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
 
-/// Box-Muller by tables: a complex Gaussian of unit variance, E|z|² = 1, from 22 random bits.
+/// Box-Muller by tables: a complex Gaussian with E|z|² = 1 from 22 random bits.
 struct GaussianTables {
     static constexpr int kRadii = 4096, kAngles = 1024;
     std::array<float, kRadii> radius;
@@ -40,7 +41,7 @@ const GaussianTables& gaussian_tables() {
     return tables;
 }
 
-/// Random bits of state j of a mode.
+/// The random bits of state j of a mode.
 inline std::uint32_t hash(std::uint32_t j, std::uint32_t key_a, std::uint32_t key_b) {
     std::uint32_t h = j * 0x9e3779b9U + key_a;
     h = (h ^ (h >> 16)) * 0x21f0aaadU;
@@ -48,15 +49,15 @@ inline std::uint32_t hash(std::uint32_t j, std::uint32_t key_a, std::uint32_t ke
     return h ^ (h >> 15);
 }
 
-// Kernel at tap d knots from the current one: exp(-(kKnotSpacing (f - d))²/2) ∝ q^d exp(-(kKnotSpacing d)²/2) with
-// q = exp(kKnotSpacing² f); the common factor cancels in the normalisation.
+// The kernel at a tap d knots from the current one is exp(-(kKnotSpacing (f - d))²/2), which is proportional to
+// q^d exp(-(kKnotSpacing d)²/2) with q = exp(kKnotSpacing² f). The common factor cancels in the normalisation.
 constexpr int kFirstTap = -3, kLastTap = 4;
 static_assert(kLastTap - kFirstTap + 1 == kKernelTaps);
 static_assert(kKnotSpacing == 1.25);
 constexpr std::array<float, kKernelTaps> kTapWeight{8.83826307e-4F, 4.39369336e-2F, 4.57833362e-1F, 1.0F,
                                                     4.57833362e-1F, 4.39369336e-2F, 8.83826307e-4F, 3.72665317e-6F};
 
-/// exp(kKnotSpacing² f), 0 <= f < 1, to 1e-6: Taylor's series about 1/2.
+/// exp(kKnotSpacing² f) for 0 <= f < 1 to 1e-6, by Taylor's series about 1/2.
 inline float kernel_ratio(float f) {
     const float x = 1.5625F * (f - 0.5F);
     float p = 1.0F / 40320;
@@ -71,7 +72,8 @@ inline float kernel_ratio(float f) {
     return 2.18420810F * p;  // e^0.78125
 }
 
-/// Modes at phase tau = t/T in [0, 1). Every states[i] >= kKernelTaps, or the mode is done by evolve_slowly.
+/// The amplitudes of modes at phase tau = t/T in [0, 1). The result is right where states[i] >= kKernelTaps. All other
+/// modes need evolve_slowly.
 EIKONAL_CLONES void evolve(const float* __restrict amplitude, const std::int32_t* __restrict states,
                            const std::uint32_t* __restrict key_a, const std::uint32_t* __restrict key_b, int n,
                            double tau, const float* __restrict radius, const float* __restrict cosine,
@@ -101,7 +103,7 @@ EIKONAL_CLONES void evolve(const float* __restrict amplitude, const std::int32_t
     }
 }
 
-/// A mode of fewer states than taps: those that coincide in the loop add before the variance is taken.
+/// The amplitude of a mode with fewer states than taps. Taps that fall on the same state are added first.
 complex32 evolve_slowly(float amplitude, std::int32_t m, std::uint32_t key_a, std::uint32_t key_b, double tau) {
     const GaussianTables& tables = gaussian_tables();
     const double p = tau * m;
@@ -124,7 +126,7 @@ complex32 evolve_slowly(float amplitude, std::int32_t m, std::uint32_t key_a, st
     return {scale * re, scale * im};
 }
 
-/// ∫_cell k²Φ jinc²(kA/2) d²k / k² of the cell at (kx, ky), by midpoints of subcells.
+/// ∫_cell k²Φ jinc²(kA/2) d²k / k² of the cell at mode (i, j), by midpoints of subcells.
 double cell_power(const Spectrum& spectrum, const BandGeometry& g, int i, int j) {
     const double dx = portable::kTwoPi / g.Lx, dy = portable::kTwoPi / g.Ly;
     const double centre2 = i * dx * i * dx + j * dy * j * dy;
@@ -158,7 +160,7 @@ ScreenBand::ScreenBand(const TurbulenceSpec& spec, const Spectrum& spectrum, con
     key_a_.resize(n);
     key_b_.resize(n);
     const double dx = portable::kTwoPi / g.Lx, dy = portable::kTwoPi / g.Ly;
-    const double loop = g.T * std::sqrt(spec.alpha) / kKnotSpacing;  // states per wavenumber
+    const double loop = g.T * std::sqrt(spec.alpha) / kKnotSpacing;  // states of a mode, divided by its wavenumber
     const double most = static_cast<double>(kStatesPerSample) * g.nt;
     const int columns = std::min(g.highest, (g.ny - 1) / 2), rows = std::min(g.highest, (g.nx - 1) / 2);
     struct Row {
@@ -221,7 +223,7 @@ FftVector<complex32> ScreenBand::spectrum_at(double t) const {
                           : evolve_slowly(amplitude_[at], states_[at], key_a_[at], key_b_[at], tau);
         }
     }
-    // Hermitian symmetry within the plane ky = 0
+    // Hermitian symmetry within the row ky = 0.
     out[0] = 0;
     for (int i = 1; i <= rows; ++i)
         out[static_cast<std::size_t>(g.nx - i) * half()] = std::conj(out[static_cast<std::size_t>(i) * half()]);

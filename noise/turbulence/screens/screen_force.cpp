@@ -7,6 +7,7 @@
 
 #include "noise/math/ray_bounds.h"
 #include "noise/turbulence/parameters/falloff.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
@@ -14,13 +15,16 @@ namespace {
 using glm::dmat3;
 using glm::dvec2;
 
-/// The largest bend that is reckoned with, in standard deviations, and the part of a cell that the meeting point may
+/// The largest bend that steps allow for, in standard deviations, and the part of a cell that the meeting point may
 /// move within a step.
 constexpr double kLargestBend = 6, kPartOfCell = 0.5;
+/// Of the whole way: what a straight walk over the ends of slabs may lose to rounding.
+constexpr double kWalked = 1e-12;
 
 }  // namespace
 
-/// Where a ray's tangent meets the screen of its slab, and gψ there along the frame's axes.
+/// The point where a ray's tangent meets the screen of its slab, and the derivatives of gψ there along the frame's
+/// axes.
 struct ScreenForce::Meeting {
     dvec2 slope;    ///< s = p⊥/p_z
     double length;  ///< L
@@ -37,7 +41,7 @@ ScreenForce::ScreenForce(const ScreenField& field, std::vector<ScreenInstant> sc
     for (std::size_t m = 0; m < screens_.size(); ++m) {
         const double thickness = screens_[m].thickness();
         ends_.push_back(screens_[m].w() + 0.5 * thickness);
-        // A bend grows to `largest` over the slab; half a slab away the meeting point moves by half a slab times it.
+        // A bend grows to `largest` over the slab. It moves the meeting point by at most half a slab times `largest`.
         const double largest = kLargestBend * std::abs(strength) * std::sqrt(field.gradient_variance(m));
         steps_.push_back(largest > 0 ? std::min(thickness, kPartOfCell * screens_[m].cell() / (0.5 * largest))
                                      : thickness);
@@ -95,11 +99,11 @@ ForceJet ScreenForce::force_jet(const dvec3& x, const dvec3& p) const {
     const double L = m->length, along = glm::dot(s, g), pz = rate(p);
     const auto in_world = [&](const dvec2& v) { return v.x * e1 + v.y * e2; };
     const dvec3 h = in_world(slanted_bend(s, L, g));
-    // columns of the Hessian, and its product with the slope
+    // The columns of the Hessian, and its product with the slope.
     const dvec3 h1 = in_world(slanted_bend(s, L, {m->xx, m->xy})), h2 = in_world(slanted_bend(s, L, {m->xy, m->yy}));
     const dvec3 hs = s.x * h1 + s.y * h2;
     const dmat3 by_meeting = glm::outerProduct(h1, e1) + glm::outerProduct(h2, e2) - glm::outerProduct(hs, e3);
-    // ∂(s (s·g)/(L + 1))/∂s_i, and ∂s_i/∂p = (e_i - s_i e3)/p_z
+    // ∂(s (s·g)/(L + 1))/∂s_i, with ∂s_i/∂p = (e_i - s_i e3)/p_z.
     const auto by_slope = [&](int i) {
         dvec2 d = s * (g[i] - along * s[i] / (L * (L + 1)));
         d[i] += along;
@@ -107,7 +111,7 @@ ForceJet ScreenForce::force_jet(const dvec3& x, const dvec3& p) const {
     };
     const dmat3 by_slant =
         glm::outerProduct(by_slope(0), (e1 - s.x * e3) / pz) + glm::outerProduct(by_slope(1), (e2 - s.y * e3) / pz);
-    // ∂q/∂p is ahead/p_z times ∂q/∂x; ∂ ln(1/√L)/∂p = -(p/|p|² - forward/p_z)/2
+    // ∂q/∂p is ahead/p_z times ∂q/∂x, and ∂ ln(1/√L)/∂p = -(p/|p|² - forward/p_z)/2.
     const dvec3 slant = -0.5 * (p / glm::dot(p, p) - e3 / pz);
     return {m->factor * h, m->factor * by_meeting,
             m->factor * ((m->ahead / pz) * by_meeting + glm::outerProduct(h, slant) + by_slant)};
@@ -132,6 +136,15 @@ double ScreenForce::way_to_edge(const dvec3& x, const dvec3& d) const {
         along > 0 ? std::upper_bound(ends_.begin(), ends_.end(), z) : std::lower_bound(ends_.begin(), ends_.end(), z);
     if (along > 0) return end == ends_.end() ? kNever : (*end - z) / along;
     return end == ends_.begin() ? kNever : (z - *(end - 1)) / -along;
+}
+
+bool ScreenForce::add_bend(const dvec3& x, const dvec3& d, double distance, double, StraightBend& sum) const {
+    for (double w = 0; w < distance;) {
+        const double way = std::min(way_to_edge(x + w * d, d), distance - w);
+        sum.value += way * (distance - w - 0.5 * way) * force(x + (w + 0.5 * way) * d, d);
+        w += way + kWalked * distance;
+    }
+    return true;
 }
 
 }  // namespace eikonal

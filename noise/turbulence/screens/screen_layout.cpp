@@ -8,12 +8,13 @@
 
 #include "noise/base/error.h"
 #include "noise/math/portable_math.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
 
 constexpr int kSmallestSide = 16, kLargestGivenSide = 32768, kMostGivenScreens = 4096, kMostSamples = 1 << 22;
-constexpr double kPeriodInOuterScales = 4;  // below it, coarser lattices
+constexpr double kPeriodInOuterScales = 4;  ///< coarser lattices are added until the period reaches this
 
 int checked_count(const char* what, int value, int lowest, int highest) {
     if (value < lowest || value > highest)
@@ -28,7 +29,7 @@ double checked_period(const char* what, double value) {
     return value;
 }
 
-/// Far ends of `count` slabs of which each is L0 or the part q of its far end's distance, whichever is thicker.
+/// Far ends of `count` slabs. Each is as thick as L0 or the part q of its far end's distance, whichever is more.
 std::vector<double> slab_ends(double L0, double q, int count) {
     std::vector<double> ends;
     double end = 0;
@@ -36,7 +37,7 @@ std::vector<double> slab_ends(double L0, double q, int count) {
     return ends;
 }
 
-/// Far ends of all slabs; the last is `far`.
+/// Far ends of all slabs. The last one is `far`.
 std::vector<double> layout_slabs(const TurbulenceSpec& spec, double far) {
     const double L0 = spec.outer_scale;
     const double most = std::max(1.0, std::floor(far / L0 * (1 + 1e-9)));
@@ -52,7 +53,8 @@ std::vector<double> layout_slabs(const TurbulenceSpec& spec, double far) {
         const double allowed = std::min(most, static_cast<double>(kMostScreens));
         while (count < allowed && slab_ends(L0, kSlabGrowth, count).back() < far) ++count;
     }
-    // The growth at which so many slabs end at `far`; then the rest of a metre is shared out.
+    // Bisection for the growth at which `count` slabs end at `far`. All ends are then scaled by what is left of the
+    // error.
     double low = 0, high = 1;
     for (int i = 0; i < 60; ++i) {
         const double q = 0.5 * (low + high);
@@ -65,7 +67,7 @@ std::vector<double> layout_slabs(const TurbulenceSpec& spec, double far) {
     return ends;
 }
 
-/// Loop over which eddies of the outer scale decorrelate eight times, 2/(√α k0) each.
+/// The loop within which eddies of the outer scale decorrelate eight times. Each decorrelation takes 2/(√α k0).
 double default_loop(const TurbulenceSpec& spec, double fps) {
     const double k0 = portable::kTwoPi / spec.outer_scale;
     const double decorrelation = spec.alpha > 0 ? 2 / (std::sqrt(spec.alpha) * k0) : 0;
@@ -83,7 +85,7 @@ Side side(const TurbulenceSpec& spec, int axis, double width, double cell) {
                               ? std::max(kFewestCells * cell, width)
                               : std::max(kPeriodInOuterScales * spec.outer_scale, width);
     const auto n_for = [&](double period) {
-        // a multiple of four: cheaper transforms
+        // Transforms of a multiple of four are cheaper.
         const double cells =
             std::clamp(std::ceil(period / cell), static_cast<double>(kSmallestSide), static_cast<double>(kLargestSide));
         return std::min(4 * good_fft_size((static_cast<int>(cells) + 3) / 4), kLargestSide);

@@ -11,6 +11,7 @@
 #include "noise/base/error.h"
 #include "noise/math/bessel.h"
 #include "noise/math/portable_math.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 
@@ -55,8 +56,8 @@ void ScreenInstant::add_values(const Columns& columns, double y, float weight, f
 
 namespace {
 
-/// Variance of ∂ψ/∂x [rad²] beyond the Nyquist wavenumber of a screen, as the circle around the origin that has the
-/// area of its lattice's square: 2π²δ ∫ k³Φ jinc²(kA/2) dk.
+/// Variance of ∂ψ/∂x [rad²] beyond the Nyquist wavenumber of a screen: 2π²δ ∫ k³Φ jinc²(kA/2) dk. The square of the
+/// lattice's wavenumbers is replaced by a circle of the same area.
 double lost_gradient_variance(const TurbulenceSpec& spec, const ScreenGeometry& s, const Spectrum& spectrum) {
     if (spec.spectrum == SpectrumKind::Paper) return 0;
     constexpr double kBeyondInnerScale = 4;

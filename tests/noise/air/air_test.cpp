@@ -1,3 +1,5 @@
+// The sum of a scene's media: index, force, jets, steps and edges, for each kind alone and together.
+// Length: every promise is checked for every kind of medium, on the scenes that stand at the top.
 #include "noise/air/air.h"
 
 #include <gtest/gtest.h>
@@ -13,10 +15,16 @@
 #include <vector>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
 #include "noise/math/random.h"
+#include "noise/medium/medium_spec.h"
+#include "noise/medium/optics.h"
 #include "noise/medium/refractivity.h"
+#include "noise/profile/profile_spec.h"
+#include "noise/surface/surface_spec.h"
 #include "noise/turbulence/gradient_noise/gradient_noise.h"
 #include "noise/turbulence/lattice/lattice_instant.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "noise/turbulence/screens/screen_force.h"
 #include "noise/turbulence/screens/screens.h"
 
@@ -73,7 +81,7 @@ ShotFrame frame() {
 }
 
 Air make(const std::vector<MediumSpec>& media, const OpticsSpec& optics = {}) {
-    return {media, optics, frame(), kMemory};
+    return {media, optics, {frame(), kMemory}};
 }
 
 /// Every kind of medium by itself.
@@ -443,7 +451,7 @@ TEST(Air, StepsAndClearWaysReachThinThings) {
     for (const MediumSpec& spec : {MediumSpec(thin), MediumSpec(small)}) {
         const AirInstant f = make({spec}).at(0);
         const dvec3 x0(0.3, 2, 1),
-            aim = std::holds_alternative<SurfaceSpec>(spec) ? dvec3(9, -0.1, -30) : dvec3(3, 5.00005, -40);
+            aim = (spec.get_if<SurfaceSpec>() != nullptr) ? dvec3(9, -0.1, -30) : dvec3(3, 5.00005, -40);
         const dvec3 d = glm::normalize(aim - x0);
         const double clear = f.clear_way(x0, d);
         EXPECT_GT(clear, 10);
@@ -524,12 +532,14 @@ TEST(Air, RefusesWithTheMediumsName) {
     EXPECT_NE(message([] { make({surface(), fish_eye()}); }).find("medium.1: a profile"), std::string::npos);
     EXPECT_NE(message([] { make({fish_eye(), surface()}); }).find("medium.0: a profile"), std::string::npos);
     EXPECT_NE(message([] {
-                  Air({surface(), turbulence(TurbulenceForm::Lattice)}, {}, {}, 1000);
+                  Air({surface(), turbulence(TurbulenceForm::Lattice)}, {}, {.memory_limit = 1000});
               }).find("medium.1: "),
               std::string::npos);
-    EXPECT_NE(message([] { Air({turbulence(TurbulenceForm::Screens)}, {}, frame(), 1000); }).find("medium.0: "),
+    EXPECT_NE(message([] {
+                  Air({turbulence(TurbulenceForm::Screens)}, {}, {frame(), 1000});
+              }).find("medium.0: "),
               std::string::npos);
-    EXPECT_THROW(Air({turbulence(TurbulenceForm::Screens)}, {}, {}, kMemory), std::logic_error);
+    EXPECT_THROW(Air({turbulence(TurbulenceForm::Screens)}, {}, {.memory_limit = kMemory}), std::logic_error);
 }
 
 }  // namespace

@@ -8,11 +8,14 @@
 
 #include "noise/base/error.h"
 #include "noise/blobs/blobs.h"
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/optics.h"
 #include "noise/medium/refractivity.h"
 #include "noise/turbulence/gradient_noise/gradient_noise.h"
 #include "noise/turbulence/lattice/lattice.h"
 #include "noise/turbulence/lattice/lattice_instant.h"
 #include "noise/turbulence/parameters/spectrum.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "noise/turbulence/screens/screens.h"
 
 namespace eikonal {

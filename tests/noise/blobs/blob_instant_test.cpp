@@ -1,3 +1,4 @@
+// Sums of blobs at a point against brute force: values, derivatives, steps and free ways.
 #include "noise/blobs/blob_instant.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Births, lives, cooling and places of blobs, and what is refused.
 #include "noise/blobs/blobs.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +14,8 @@
 
 #include "noise/base/error.h"
 #include "noise/blobs/blob_instant.h"
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/optics.h"
 
 namespace eikonal {
 namespace {
@@ -111,7 +114,7 @@ TEST(BlobCloud, BirthsAreOneAnIntervalForEver) {
 }
 
 TEST(BlobCloud, BlobsLiveForExactlyTheirLifetime) {
-    // Without wind a blob is known by its place: ages grow from 0 to the lifetime, seen as σ² = σ0² + growth age.
+    // Without wind, its place identifies a blob. Its age, seen as σ² = σ0² + growth age, grows from 0 to the lifetime.
     BlobsSpec spec = plume();
     spec.wind.reset();
     const BlobSourceSpec& source = spec.sources[0];
@@ -184,7 +187,7 @@ TEST(BlobCloud, NothingPopsFromFrameToFrame) {
     std::vector<Blob> last = cloud.at(4);
     for (int i = 1; i < 400; ++i) {
         const std::vector<Blob> now = cloud.at(4 + i * dt);
-        // blobs are born at the end of the list and die at its beginning; a newcomer is cold and a leaver has faded
+        // Blobs are born at the end of the list and die at its beginning. A new blob is cold, and an old one has faded.
         for (const Blob& blob : now) {
             double nearest = kInfinity;
             for (const Blob& b : last) nearest = std::min(nearest, glm::length(b.center - blob.center));

@@ -1,3 +1,4 @@
+// The wind: spectrum, divergence, correlation in time, and particles on their exact paths.
 #include "noise/blobs/wind.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <thread>
 
+#include "noise/blobs/blobs_spec.h"
 #include "noise/math/random.h"
 
 namespace eikonal {
@@ -67,51 +69,57 @@ TEST(Eddies, DivergenceVanishesBetweenTheNodesToo) {
     EXPECT_GT(gradient2 / n, 100);
 }
 
+/// Fourier modes of the eddies' velocity at the nodes, signed indices -kMostMode … kMostMode along each axis, by direct
+/// sums along one axis after the other.
+constexpr int kMostMode = 5, kModes = 2 * kMostMode + 1;
+using ComplexVector = std::array<std::complex<double>, 3>;
+std::vector<ComplexVector> velocity_modes(const EddyInstant& eddies) {
+    constexpr int n = kEddySize;
+    std::array<std::array<std::complex<double>, n>, kModes> wave;
+    for (int m = -kMostMode; m <= kMostMode; ++m)
+        for (int i = 0; i < n; ++i) wave[m + kMostMode][i] = std::polar(1.0 / n, -2 * M_PI * m * i / n);
+    std::vector<ComplexVector> x(kModes * n * n), xy(kModes * kModes * n), xyz(kModes * kModes * kModes);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            for (int l = 0; l < n; ++l) {
+                const dvec3 v = eddies.velocity({double(i) / n, double(j) / n, double(l) / n});
+                for (int a = 0; a < kModes; ++a)
+                    for (int c = 0; c < 3; ++c) x[(a * n + j) * n + l][c] += wave[a][i] * v[c];
+            }
+    for (int a = 0; a < kModes; ++a)
+        for (int b = 0; b < kModes; ++b)
+            for (int j = 0; j < n; ++j)
+                for (int l = 0; l < n; ++l)
+                    for (int c = 0; c < 3; ++c)
+                        xy[(a * kModes + b) * n + l][c] += wave[b][j] * x[(a * n + j) * n + l][c];
+    for (int a = 0; a < kModes; ++a)
+        for (int b = 0; b < kModes; ++b)
+            for (int d = 0; d < kModes; ++d)
+                for (int l = 0; l < n; ++l)
+                    for (int c = 0; c < 3; ++c)
+                        xyz[(a * kModes + b) * kModes + d][c] += wave[d][l] * xy[(a * kModes + b) * n + l][c];
+    return xyz;
+}
+
 TEST(Eddies, SpectrumIsVonKarmans) {
-    // Fourier modes of the node values, by direct sums along one axis after the other, against the expectation
-    // 2 |k'|² Φ_A(k), k' = 3 sin θ/((2 + cos θ) cell) the slope of a cubic spline at its nodes. Shells of |m|, 60
-    // realisations: every shell holds over 1000 independent squares, hence 4 %.
-    constexpr int n = kEddySize, most = 5;
+    // The expectation is 2 |k'|² Φ_A(k), with k' = 3 sin θ/((2 + cos θ) cell) the slope of a cubic spline at its nodes.
+    // Modes are pooled in shells of |m| over 60 realisations. Every shell holds over 1000 independent squares: 4 %.
+    constexpr int n = kEddySize, most = kMostMode;
     constexpr double cell = kEddyPeriod / n, k1 = 2 * M_PI / kEddyPeriod, km = 5.92 / kEddyInnerScale;
     const auto spline_wavenumber = [](int m) {
         const double theta = 2 * M_PI * m / n;
         return 3 * std::sin(theta) / ((2 + std::cos(theta)) * cell);
     };
-    using Complex = std::complex<double>;
-    std::array<std::array<Complex, n>, 2 * most + 1> wave;
-    for (int m = -most; m <= most; ++m)
-        for (int i = 0; i < n; ++i) wave[m + most][i] = std::polar(1.0 / n, -2 * M_PI * m * i / n);
     std::array<double, most + 1> energy{}, expected{};
     double solenoidal = 0, total = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
-        const EddyInstant eddies = EddyField(seed).at(0.3);
-        constexpr int modes = 2 * most + 1;
-        std::vector<std::array<Complex, 3>> x(modes * n * n), xy(modes * modes * n), xyz(modes * modes * modes);
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j)
-                for (int l = 0; l < n; ++l) {
-                    const dvec3 v = eddies.velocity({double(i) / n, double(j) / n, double(l) / n});
-                    for (int a = 0; a < modes; ++a)
-                        for (int c = 0; c < 3; ++c) x[(a * n + j) * n + l][c] += wave[a][i] * v[c];
-                }
-        for (int a = 0; a < modes; ++a)
-            for (int b = 0; b < modes; ++b)
-                for (int j = 0; j < n; ++j)
-                    for (int l = 0; l < n; ++l)
-                        for (int c = 0; c < 3; ++c)
-                            xy[(a * modes + b) * n + l][c] += wave[b][j] * x[(a * n + j) * n + l][c];
-        for (int a = 0; a < modes; ++a)
-            for (int b = 0; b < modes; ++b)
-                for (int d = 0; d < modes; ++d)
-                    for (int l = 0; l < n; ++l)
-                        for (int c = 0; c < 3; ++c)
-                            xyz[(a * modes + b) * modes + d][c] += wave[d][l] * xy[(a * modes + b) * n + l][c];
+        const std::vector<ComplexVector> modes = velocity_modes(EddyField(seed).at(0.3));
         for (int a = -most; a <= most; ++a)
             for (int b = -most; b <= most; ++b)
                 for (int d = -most; d <= most; ++d) {
                     const double m2 = a * a + b * b + d * d, shell = std::round(std::sqrt(m2));
                     if (m2 == 0 || shell > most) continue;
-                    const auto& v = xyz[((a + most) * modes + b + most) * modes + d + most];
+                    const ComplexVector& v = modes[((a + most) * kModes + b + most) * kModes + d + most];
                     const double k2 = k1 * k1 * m2;
                     const dvec3 slope(spline_wavenumber(a), spline_wavenumber(b), spline_wavenumber(d));
                     energy[static_cast<std::size_t>(shell)] += std::norm(v[0]) + std::norm(v[1]) + std::norm(v[2]);

@@ -1,3 +1,4 @@
+// Profiles against their formulas and derivatives, and where they leave no index.
 #include "noise/profile/profile.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "noise/math/random.h"
+#include "noise/profile/profile_spec.h"
 
 namespace eikonal {
 namespace {

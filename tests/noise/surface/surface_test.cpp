@@ -1,3 +1,4 @@
+// Air over a heated plane against long double, over all ranges; the critical angle.
 #include "noise/surface/surface.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,8 @@
 #include <vector>
 
 #include "noise/math/random.h"
+#include "noise/medium/optics.h"
+#include "noise/surface/surface_spec.h"
 
 namespace eikonal {
 namespace {

@@ -1,3 +1,4 @@
+// Gradient noise: variance, structure function, gradient, evolution and motion.
 #include "noise/turbulence/gradient_noise/gradient_noise.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include "noise/base/error.h"
 #include "noise/math/random.h"
 #include "noise/turbulence/parameters/spectrum.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {

@@ -1,4 +1,5 @@
-/// What interpolation in a lattice's spline is off by: of the force, of the rays that it bends, and as asked for.
+/// The error of interpolation by a lattice's spline: in the force, in the rays that it bends, and against what was
+/// asked.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,8 +9,12 @@
 #include "noise/air/air.h"
 #include "noise/base/error.h"
 #include "noise/math/random.h"
+#include "noise/medium/optics.h"
 #include "noise/medium/refractivity.h"
+#include "noise/surface/surface_spec.h"
 #include "noise/turbulence/lattice/lattice_instant.h"
+#include "noise/turbulence/lattice/lattice_medium.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
@@ -56,7 +61,7 @@ TEST(Interpolation, IsAsNearTheSumAsStated) {
         const double stated = lattice_spline_error(lattice, padding).slope;
         EXPECT_NEAR(std::sqrt(error / power), stated, 0.25 * stated + 3e-5) << padding;
     }
-    const Air field({spec}, {}, {}, kMemory);
+    const Air field({spec}, {}, {.memory_limit = kMemory});
     EXPECT_GT(field.interpolation_error(), 0);
     EXPECT_LE(field.interpolation_error(), kInterpolationError);
     const AirInstant f = field.at(0.5);
@@ -65,14 +70,14 @@ TEST(Interpolation, IsAsNearTheSumAsStated) {
         EXPECT_NEAR(f.refractivity(x), index_law(OpticsSpec{}).ambient() + exact.jet(x).n,
                     1e-3 * std::sqrt(lattice.variance()));
     }
-    // The same on every machine, or a refusal.
+    // The result is the same on every machine, or it is refused.
     const std::uint64_t bare = lattice_bytes(spec, lattice.geometry());
-    EXPECT_THROW(Air({spec}, {}, {}, bare + 1000), UserError);
-    EXPECT_EQ(Air({spec}, {}, {}, bare + 10'000'000).interpolation_error(), field.interpolation_error());
-    EXPECT_EQ(Air({SurfaceSpec{}}, {}, {}, kMemory).interpolation_error(), 0);
+    EXPECT_THROW(Air({spec}, {}, {.memory_limit = bare + 1000}), UserError);
+    EXPECT_EQ(Air({spec}, {}, {.memory_limit = bare + 10'000'000}).interpolation_error(), field.interpolation_error());
+    EXPECT_EQ(Air({SurfaceSpec{}}, {}, {.memory_limit = kMemory}).interpolation_error(), 0);
 }
 
-// Straight rays through a spline and through one so fine that it is the sum itself, by the midpoint rule.
+// Integrals along straight rays through a spline, and through one so fine that it equals the sum, by the midpoint rule.
 TEST(Interpolation, MovesRaysByWhatIsStated) {
     TurbulenceSpec spec = air();
     spec.lattice = {16, 16, 16, 1};
@@ -85,8 +90,8 @@ TEST(Interpolation, MovesRaysByWhatIsStated) {
             for (const int padding : {1, 2, 4}) {
                 const auto spline = std::make_shared<const LatticeInstant>(field, 0, padding);
                 const OpticsSpec optics{.exaggeration = 3};
-                const AirInstant f(optics,
-                                   {{LatticePart{&field, spline, lattice_spline_error(field, padding).bend}, 2}});
+                const AirInstant f(
+                    optics, {{lattice_medium_instant(spline, field, lattice_spline_error(field, padding).bend), 2}});
                 Draw draw;
                 double shifts = 0, turns = 0, stated_shifts = 0, stated_turns = 0;
                 for (int i = 0; i < 300; ++i) {
@@ -124,14 +129,17 @@ TEST(Interpolation, IsAsFineAsRaysNeed) {
     const dvec3 from(0, 0, 0), to(0, 0, 10);
     for (const double exaggeration : {1.0, 100.0}) {
         const auto turn = [&](double allowed) {
-            return Air({spec}, {.exaggeration = exaggeration}, {}, kMemory, allowed).at(0).interpolation(from, to).turn;
+            return Air({spec}, {.exaggeration = exaggeration}, {.memory_limit = kMemory, .bend_error = allowed})
+                .at(0)
+                .interpolation(from, to)
+                .turn;
         };
         const double any = turn(std::numeric_limits<double>::infinity()), per_metre = any / std::sqrt(10.0);
         EXPECT_EQ(turn(per_metre), any);
         EXPECT_LE(turn(0.5 * per_metre), 0.5 * any);
         EXPECT_GT(turn(1e-9 * per_metre), 0) << "as fine as it may be";
     }
-    EXPECT_EQ(Air({SurfaceSpec{}}, {}, {}, kMemory).at(0).interpolation(from, to).turn, 0);
+    EXPECT_EQ(Air({SurfaceSpec{}}, {}, {.memory_limit = kMemory}).at(0).interpolation(from, to).turn, 0);
 }
 
 }  // namespace

@@ -1,113 +1,24 @@
-// The lattice against its own discrete expectation: in space, in time, and as a continuous function.
-//
-// Statistical tests pool a sum of many squared Gaussians, whose z-score is known, and compare it with kWorstZ, the
-// two-sided 1e-4 quantile after Bonferroni's correction for the ~200 comparisons of this file. Seeds are fixed.
+/// The lattice against its own discrete expectation, in space and in time.
+///
+/// Statistical tests pool a sum of many squared Gaussians, whose z-score is known, and compare it with kWorstZ: the
+/// two-sided 1e-4 quantile after Bonferroni's correction for some 200 comparisons. Seeds are fixed.
 #include "noise/turbulence/lattice/lattice.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <numeric>
 
 #include "noise/base/error.h"
-#include "noise/math/fourier_random.h"
-#include "noise/math/random.h"
 #include "noise/turbulence/lattice/lattice_instant.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "tests/noise/trigonometric_sum.h"
+#include "tests/noise/turbulence/lattice_boxes.h"
 
 namespace eikonal {
 namespace {
 
 constexpr double kWorstZ = 5.0;
-
-TurbulenceSpec air(std::uint64_t seed = 1, double alpha = 0.5) {
-    TurbulenceSpec spec;
-    spec.seed = seed;
-    spec.cn2 = 1e-12;
-    spec.outer_scale = 0.7;
-    spec.inner_scale = 0.2;
-    spec.alpha = alpha;
-    return spec;
-}
-
-LatticeGeometry box(int nx, int ny, int nz, int nt) {
-    return {{nx, ny, nz, nt}, {1.0, 1.3, 0.9, 2.0}};
-}
-
-FftVector<float> samples_of(FftVector<complex32> spectrum, const LatticeGeometry& g) {
-    const FftPlan plan(FftPlan::Kind::ComplexToReal, std::array{g.size[0], g.size[1], g.size[2]});
-    FftVector<float> out(plan.sample_size());
-    plan.execute(spectrum.data(), out.data());
-    return out;
-}
-
-double rms(std::span<const float> v) {
-    double sum = 0;
-    for (const float x : v) sum += double{x} * x;
-    return std::sqrt(sum / static_cast<double>(v.size()));
-}
-
-double worst_difference(std::span<const float> a, std::span<const float> b) {
-    EXPECT_EQ(a.size(), b.size());
-    double worst = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(double{a[i]} - b[i]));
-    return worst;
-}
-
-TEST(FourierRandom, MomentsOfAStandardGaussian) {
-    constexpr int kRow = 65, kRows = 40000;
-    const std::vector<float> one(kRow, 1.0F);
-    std::vector<float> a(kRow), b(kRow), last(kRow);
-    std::vector<std::uint32_t> counter(kRow);
-    std::iota(counter.begin(), counter.end(), 0U);
-    std::array<double, 5> moment{};
-    double product = 0, squares = 0, neighbour = 0, across = 0;
-    float largest = 0;
-    const RandomStream stream(3, "test");
-    for (int r = 0; r < kRows; ++r) {
-        last = a;
-        gaussian_modes(stream.bits(static_cast<std::uint64_t>(r)), counter.data(), kRow, one.data(), a.data(),
-                       b.data());
-        for (int i = 0; i < kRow; ++i) {
-            for (const float x : {a[i], b[i]}) {
-                double power = 1;
-                for (auto& m : moment) m += (power *= x);
-                largest = std::max(largest, std::abs(x));
-            }
-            product += a[i] * b[i];
-            squares += (a[i] * a[i] - 1) * (b[i] * b[i] - 1);
-            across += a[i] * last[i];
-            if (i > 0) neighbour += a[i] * a[i - 1];
-        }
-    }
-    const double n = 2.0 * kRow * kRows;
-    // variances of x, x² - 1, x³, x⁴ - 3, x⁵ of a Gaussian
-    EXPECT_LT(std::abs(moment[0] / n), kWorstZ * std::sqrt(1 / n));
-    EXPECT_LT(std::abs(moment[1] / n - 1), kWorstZ * std::sqrt(2 / n));
-    EXPECT_LT(std::abs(moment[2] / n), kWorstZ * std::sqrt(15 / n));
-    EXPECT_LT(std::abs(moment[3] / n - 3), kWorstZ * std::sqrt(96 / n));
-    EXPECT_LT(std::abs(moment[4] / n), kWorstZ * std::sqrt(945 / n));
-    EXPECT_LT(std::abs(product / n), kWorstZ * std::sqrt(0.5 / n));
-    EXPECT_LT(std::abs(squares / n), kWorstZ * std::sqrt(2 / n));
-    EXPECT_LT(std::abs(neighbour / n), kWorstZ * std::sqrt(0.5 / n));
-    EXPECT_LT(std::abs(across / n), kWorstZ * std::sqrt(0.5 / n));
-    EXPECT_LE(largest, kGaussianLimit);
-    EXPECT_GT(largest, 4.5F);
-}
-
-TEST(FourierRandom, AModeDependsOnlyOnItsKeyAndIndex) {
-    std::vector<float> one(40, 1.0F), a(40), b(40), c(40), d(40);
-    std::vector<std::uint32_t> counter(40);
-    std::iota(counter.begin(), counter.end(), 0U);
-    gaussian_modes(77, counter.data(), 40, one.data(), a.data(), b.data());
-    gaussian_modes(77, counter.data() + 9, 31, one.data(), c.data(), d.data());
-    for (int i = 0; i < 31; ++i) {
-        EXPECT_EQ(c[i], a[i + 9]);
-        EXPECT_EQ(d[i], b[i + 9]);
-    }
-}
 
 TEST(Lattice, StructureFunctionOfPureKolmogorov) {
     TurbulenceSpec spec;
@@ -158,8 +69,8 @@ TEST(Lattice, RealisationsHaveTheExpectedStructureFunction) {
             }
 }
 
-// Every mode's power over its expectation is χ² with two degrees of freedom (one if it is its own conjugate), pooled
-// here over shells of |m|² and over seeds; at sample instants and between them, and for every α.
+// Every mode's power divided by its expectation is χ² with two degrees of freedom, or one if it is its own conjugate.
+// It is pooled over shells of |m|² and over seeds, at sample instants and between them, and for every α.
 TEST(Lattice, ModePowerIsChiSquareForEveryAlphaAndInstant) {
     constexpr int kSeeds = 60, kBins = 4;
     for (const auto& g : {box(8, 6, 10, 4), box(7, 5, 9, 5), box(6, 8, 4, 2)})
@@ -351,7 +262,7 @@ TEST(Lattice, ForceHasNoCurl) {
     }
 }
 
-// F is ik n̂ below Nyquist and nothing at it; n has both; and the continuous field has that F at its nodes.
+// F is ik n̂ below Nyquist and zero at Nyquist. n has both. The continuous field has this F at its nodes.
 TEST(Lattice, NyquistModesCountInTheIndexAndBendNoLight) {
     TurbulenceSpec spec = air();
     spec.spectrum = SpectrumKind::Paper;  // power up to Nyquist
@@ -360,7 +271,7 @@ TEST(Lattice, NyquistModesCountInTheIndexAndBendNoLight) {
     for (const auto& g : {box(8, 6, 10, 4), box(8, 5, 9, 4)}) {
         const LatticeField field(spec, g);
         const auto index = forward_transform(node_field(field, 0.3, Component::Index), g);
-        const LatticeInstant snapshot(field, 0.3, 8);
+        const LatticeInstant instant(field, 0.3, 8);
         for (int axis = 0; axis < 3; ++axis) {
             const auto nodes = node_field(field, 0.3, static_cast<Component>(axis + 1));
             const auto force = forward_transform(nodes, g);
@@ -377,7 +288,7 @@ TEST(Lattice, NyquistModesCountInTheIndexAndBendNoLight) {
                         largest = std::max(largest, std::abs(expected));
                         if (nyquist) at_nyquist = std::max(at_nyquist, std::abs(k * index[at]));
                         const dvec3 place{x * g.spacing(0), y * g.spacing(1), z * g.spacing(2)};
-                        slope = std::max(slope, std::abs(snapshot.jet(place).gradient[axis] - nodes[at]));
+                        slope = std::max(slope, std::abs(instant.jet(place).gradient[axis] - nodes[at]));
                     }
             EXPECT_LT(worst, 1e-5 * largest) << axis;
             EXPECT_GT(at_nyquist, 0.01 * largest) << "a lattice without such modes tests nothing";
@@ -438,7 +349,7 @@ TEST(LatticeGeometry, RefusesTheImpossibleBeforeAllocating) {
     EXPECT_NE(message(box(4, -4, 4, 1), kLimit).find("ny = -4"), std::string::npos);
     EXPECT_NE(message(box(1024, 1024, 1024, 64), kLimit).find("GB"), std::string::npos);
     EXPECT_NE(message(box(60000, 60000, 60000, 2000000000), kLimit).find("GB"), std::string::npos);
-    // a single row that no int counts, however much memory there is
+    // An int cannot count the modes of this row, however much memory there is.
     EXPECT_NE(message(box(2, 2, 131068, 70000), ~std::uint64_t{0}).find("nz = 131068 times nt = 70000"),
               std::string::npos);
     EXPECT_EQ(message(box(2, 2, 131068, 15000), ~std::uint64_t{0}), "");
@@ -450,103 +361,6 @@ TEST(LatticeGeometry, RefusesTheImpossibleBeforeAllocating) {
     TurbulenceSpec spec = air();
     spec.cn2 = 1e300;
     EXPECT_THROW(LatticeField(spec, box(4, 4, 4, 1)), UserError);
-}
-
-TEST(LatticeInstant, PassesThroughTheNodesAndHasItsOwnGradient) {
-    for (const auto& g : {box(16, 12, 18, 4), box(9, 7, 5, 4), box(2, 2, 2, 2)})
-        for (const int padding : {1, 2}) {
-            const LatticeField field(air(), g);
-            const LatticeInstant snapshot(field, 0.3, padding);
-            const auto nodes = samples_of(field.bending_spectrum_at(0.3), g);
-            const double scale = rms(node_field(field, 0.3, Component::Index));
-            std::size_t at = 0;
-            for (int x = 0; x < g.size[0]; ++x)
-                for (int y = 0; y < g.size[1]; ++y)
-                    for (int z = 0; z < g.size[2]; ++z, ++at) {
-                        const IndexSample s =
-                            snapshot.sample({x * g.spacing(0), y * g.spacing(1), (z - g.size[2]) * g.spacing(2)});
-                        ASSERT_NEAR(s.n, nodes[at], 1e-5 * scale);
-                        ASSERT_GE(s.n, snapshot.lower_bound());
-                        ASSERT_LE(s.n, snapshot.upper_bound());
-                    }
-            for (const dvec3& x : {dvec3(0.11, 0.71, -5.3), dvec3(-17.3, 2.22, 0.456)})
-                for (int axis = 0; axis < 3; ++axis) {
-                    dvec3 h(0);
-                    h[axis] = 1e-3;  // the spline is evaluated in float: a smaller step measures its rounding
-                    const double slope = (snapshot.sample(x + h).n - snapshot.sample(x - h).n) / 2e-3;
-                    EXPECT_NEAR(snapshot.sample(x).gradient[axis], slope,
-                                1e-4 * scale / g.spacing(axis) + 1e-3 * std::abs(slope));
-                }
-        }
-}
-
-TEST(LatticeInstant, InterpolationErrorIsAsStated) {
-    // single modes along x: rms over a cell of spline against e^{ikx}; padding along x alone, and not along x
-    constexpr int n = 16;
-    for (const auto& [m, padding] :
-         {std::pair{1, Padding{1, 1, 1}}, std::pair{2, Padding{1, 3, 2}}, std::pair{4, Padding{1, 1, 1}},
-          std::pair{6, Padding{1, 2, 2}}, std::pair{4, Padding{2, 1, 1}}, std::pair{6, Padding{3, 1, 2}}}) {
-        FftVector<complex32> spectrum(static_cast<std::size_t>(n * 2 * 2));
-        spectrum[static_cast<std::size_t>(m * 4)] = spectrum[static_cast<std::size_t>((n - m) * 4)] = {0.5F, 0};
-        const PeriodicSpline3 spline(spectrum, {n, 2, 2}, padding);
-        double value = 0, slope = 0;
-        constexpr int kPoints = 4096;
-        for (int i = 0; i < kPoints; ++i) {
-            const double x = (i + 0.5) / kPoints, phase = 2 * M_PI * m * x, k = 2 * M_PI * m;
-            const auto s = spline.sample({x, 0, 0});
-            value += std::pow(s.value - std::cos(phase), 2) / kPoints;
-            slope += std::pow(s.gradient.x / k + std::sin(phase), 2) / kPoints;
-        }
-        // rms of a cosine is 1/√2
-        const double turns = static_cast<double>(m) / (n * padding[0]);
-        EXPECT_NEAR(std::sqrt(2 * value), spline_error(turns), 1e-6 + 1e-3 * spline_error(turns));
-        EXPECT_NEAR(std::sqrt(2 * slope), spline_slope_error(turns), 1e-6 + 1e-3 * spline_slope_error(turns));
-    }
-    // the field itself: less with padding, and small
-    const auto g = box(16, 16, 16, 1);
-    const LatticeField field(air(), g);
-    const TrigonometricSum exact(field.spectrum_at(0), g);
-    double previous = 1;
-    for (const int padding : {1, 2, 4}) {
-        const LatticeInstant snapshot(field, 0, padding);
-        double error = 0, total = 0;
-        for (int i = 0; i < 200; ++i) {
-            const RandomStream stream(1, "points", static_cast<std::uint64_t>(i));
-            const dvec3 x(stream.uniform(0), stream.uniform(1), stream.uniform(2));
-            const IndexSample s = snapshot.sample(x), e = exact.sample(x);
-            error += glm::dot(s.gradient - e.gradient, s.gradient - e.gradient);
-            total += glm::dot(e.gradient, e.gradient);
-        }
-        const double relative = std::sqrt(error / total);
-        EXPECT_LT(relative, 0.2 * previous) << padding;
-        previous = relative;
-    }
-    EXPECT_LT(previous, 2e-3);
-}
-
-TEST(LatticeInstant, FalloffMultipliesThePotential) {
-    const auto g = box(12, 10, 8, 1);
-    TurbulenceSpec spec = air();
-    const LatticeField bare(spec, g);
-    spec.falloff = Falloff{{0, 0.2, 0}, {0, 1, 0}, 0.3};
-    const LatticeField field(spec, g);
-    const LatticeInstant snapshot(field, 0), plain(bare, 0);
-    for (const dvec3& x : {dvec3(0.3, 0.1, 0.2), dvec3(0.5, 0.9, 0.7), dvec3(0.1, 2.9, 0.4)}) {
-        const double factor = x.y > 0.2 ? std::exp(-(x.y - 0.2) / 0.3) : 1;
-        EXPECT_NEAR(snapshot.sample(x).n, factor * plain.sample(x).n, 1e-12);
-        for (int axis = 0; axis < 3; ++axis) {
-            dvec3 h(0);
-            h[axis] = 1e-3;
-            const double slope = (snapshot.sample(x + h).n - snapshot.sample(x - h).n) / 2e-3;
-            EXPECT_NEAR(snapshot.sample(x).gradient[axis], slope, 1e-4 * std::abs(slope) + 1e-10);
-        }
-    }
-    // node fields: same product
-    const auto index = samples_of(bare.bending_spectrum_at(0), g), fy = node_field(bare, 0, Component::ForceY);
-    const auto scaled = node_field(field, 0, Component::ForceY);
-    const auto at = static_cast<std::size_t>((3 * 10 + 7) * 8 + 2);
-    const double y = 7 * g.spacing(1), factor = std::exp(-(y - 0.2) / 0.3);
-    EXPECT_NEAR(scaled[at], factor * (fy[at] - index[at] / 0.3), 1e-5 * rms(fy));
 }
 
 }  // namespace

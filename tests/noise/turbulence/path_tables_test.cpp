@@ -9,6 +9,7 @@
 #include "noise/math/bessel.h"
 #include "noise/math/random.h"
 #include "noise/turbulence/lattice/path_kernel.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "tests/noise/trigonometric_sum.h"
 
 namespace eikonal {

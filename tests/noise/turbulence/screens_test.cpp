@@ -1,137 +1,23 @@
+/// Thin screens against closed forms of the continuum and against their own discrete expectation, in space and in time.
 #include "noise/turbulence/screens/screens.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
-#include "noise/base/error.h"
 #include "noise/math/bessel.h"
 #include "noise/math/random.h"
-#include "noise/turbulence/lattice/lattice_instant.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 
 namespace eikonal {
 namespace {
 
 constexpr double kTau = 2 * M_PI;
 
-/// One mode cos(2π(a x/Lx + b y/Ly) + phase of value) of amplitude 2|value| (b > 0).
-FftVector<complex32> one_mode(int nx, int ny, int a, int b, complex32 value) {
-    FftVector<complex32> s(static_cast<std::size_t>(nx) * (ny / 2 + 1));
-    s[static_cast<std::size_t>((a + nx) % nx) * (ny / 2 + 1) + b] = value;
-    return s;
-}
-
-PeriodicSpline2 random_spline(int nx, int ny, double Lx, double Ly, int highest) {
-    FftVector<complex32> s(static_cast<std::size_t>(nx) * (ny / 2 + 1));
-    const RandomStream stream(4, "spline test");
-    for (int a = -highest; a <= highest; ++a)
-        for (int b = 1; b <= highest; ++b) {
-            double re, im;
-            stream.gaussians(static_cast<std::uint64_t>((a + 100) * 1000 + b), re, im);
-            s[static_cast<std::size_t>((a + nx) % nx) * (ny / 2 + 1) + b] =
-                complex32(re, im) / static_cast<float>(a * a + b * b);
-        }
-    return {std::move(s), nx, ny, Lx, Ly};
-}
-
-TEST(PeriodicSpline2, PassesThroughTheSamplesOfTheTrigonometricSum) {
-    const int nx = 24, ny = 20;
-    const double Lx = 3, Ly = 2;
-    const complex32 z(0.3f, -0.8f);
-    for (const auto& [a, b] : {std::pair{1, 1}, {-5, 3}, {11, 9}, {0, 7}}) {
-        const PeriodicSpline2 f(one_mode(nx, ny, a, b, z), nx, ny, Lx, Ly);
-        for (int i = -3; i < nx + 3; ++i)
-            for (int j = -3; j < ny + 3; ++j) {
-                const double phase = kTau * (double(a) * i / nx + double(b) * j / ny);
-                const double expected = 2 * (z.real() * std::cos(phase) - z.imag() * std::sin(phase));
-                EXPECT_NEAR(f.sample(i * Lx / nx, j * Ly / ny).value, expected, 3e-5) << i << ' ' << j;
-            }
-    }
-}
-
-TEST(PeriodicSpline2, GradientErrorOfAModeIsTheStatedOne) {
-    const int n = 48;
-    const RandomStream stream(1, "spline test");
-    for (const int pad : {1, 2})
-        for (const int mode : {3, 6, 8, 12, 18}) {
-            const PeriodicSpline2 f(one_mode(n, n, 0, mode, 0.5f), n, n, 1, 1, pad);
-            double error = 0, power = 0;
-            for (int i = 0; i < 4000; ++i) {
-                const double x = stream.uniform(2 * i), y = stream.uniform(2 * i + 1);
-                const double exact = -kTau * mode * std::sin(kTau * mode * y);
-                const double d = f.sample(x, y).dy - exact;
-                error += d * d;
-                power += exact * exact;
-            }
-            const double stated = spline_slope_error(double(mode) / (n * pad));
-            EXPECT_NEAR(std::sqrt(error / power), stated, 0.06 * stated + 3e-6) << mode << ' ' << pad;
-        }
-    // The figures in the header
-    for (const auto& [omega, error] :
-         {std::pair{M_PI / 8, 4e-4}, {M_PI / 4, 3.3e-3}, {M_PI / 3, 0.009}, {M_PI / 2, 0.04}, {3 * M_PI / 4, 0.23}})
-        EXPECT_NEAR(spline_slope_error(omega / kTau), error, 0.2 * error) << omega;
-}
-
-TEST(PeriodicSpline2, GradientIsTheDerivativeOfTheValue) {
-    const PeriodicSpline2 f = random_spline(32, 40, 2, 3, 9);
-    const double h = 1e-3;
-    for (int i = 0; i < 100; ++i) {
-        const double x = 0.0371 * i - 1, y = 0.0513 * i - 2;
-        const auto s = f.sample(x, y);
-        EXPECT_NEAR((f.sample(x + h, y).value - f.sample(x - h, y).value) / (2 * h), s.dx, 0.01);
-        EXPECT_NEAR((f.sample(x, y + h).value - f.sample(x, y - h).value) / (2 * h), s.dy, 0.01);
-    }
-}
-
-TEST(PeriodicSpline2, BatchesAgreeWithSamples) {
-    const PeriodicSpline2 f = random_spline(32, 40, 2, 3, 9);
-    float largest = 0;
-    for (int i = 0; i < 1000; ++i) largest = std::max(largest, std::abs(f.sample(0.017 * i, 0.031 * i).dx));
-    struct Case {
-        double x0, y0, dx, dy;
-        int n;
-    };
-    for (const Case& c : {Case{0.1, 0.2, 0.03, 0, 333},
-                          {-5.7, 9.1, -0.021, 0.017, 200},
-                          {1e7, -1e7, 0.05, 0, 65},
-                          {0.3, 0.4, 0, 0, 5},
-                          {0.5, 1.5, 0.0003, -0.0004, 1000},
-                          {-0.01, 2.99, 0.0009, 0, 500},
-                          {1, 1, 3, 7, 100}}) {
-        std::vector<float> uv(2 * c.n, 1.0f), values(c.n, 2.0f), row(c.n, 2.0f);
-        const auto columns = f.columns(c.x0, c.dx, c.n);
-        f.add_row_gradients(columns, c.y0, 0.5f, uv.data());
-        f.add_row_values(columns, c.y0, 0.5f, row.data());
-        f.add_values(c.x0, c.y0, c.dx, c.dy, c.n, 0.5f, values.data());
-        const double tolerance = largest * (std::abs(c.x0) > 1e6 ? 1e-4 : 1e-6);
-        for (int i = 0; i < c.n; ++i) {
-            const auto s = f.sample(c.x0 + i * c.dx, c.y0);
-            EXPECT_NEAR(uv[2 * i], 1 + 0.5f * s.dx, tolerance) << i << ' ' << c.dx;
-            EXPECT_NEAR(uv[2 * i + 1], 1 + 0.5f * s.dy, tolerance) << i << ' ' << c.dx;
-            EXPECT_NEAR(row[i], 2 + 0.5f * s.value, 1e-4) << i;
-            EXPECT_NEAR(values[i], 2 + 0.5f * f.sample(c.x0 + i * c.dx, c.y0 + i * c.dy).value, 1e-4) << i;
-        }
-    }
-}
-
-TEST(PeriodicSpline2, AnyFinitePositionIsSafe) {
-    const PeriodicSpline2 f = random_spline(8, 9, 0.7, 0.3, 3);
-    for (const double x : {1e300, -1e300, 0.7, -0.7, -1e-300, 0.7 * (1 - 1e-16), 1e17}) {
-        EXPECT_TRUE(std::isfinite(f.sample(x, -x).dx));
-        std::vector<float> uv(40);
-        f.add_row_gradients(f.columns(x, -x, 20), -x, 1, uv.data());
-        f.add_values(x, -x, -x, x, 20, 1, uv.data());
-        for (const float v : uv) EXPECT_TRUE(std::isfinite(v));
-    }
-    EXPECT_EQ(PeriodicSpline2().sample(1, 2).value, 0);
-}
-
-/// Medium and screens for the closed forms: outer scale far beyond everything else, evolving so fast that every time is
-/// an independent realisation.
+/// Medium and screens for the closed forms. The outer scale is far beyond all other lengths. The air evolves so fast
+/// that every time is an independent realisation.
 struct ClosedForm {
     TurbulenceSpec spec;
     ShotView view;
@@ -219,7 +105,7 @@ TEST(Screens, DiscreteExpectationIsTheContinuum) {
             }
 }
 
-// What cells of any size hold and what they leave out is the continuum.
+// The parts that cells of any size hold and leave out add up to the continuum.
 TEST(Screens, WhatCellsLeaveOutIsKnown) {
     for (const double aperture : {0.0, 0.05})
         for (const double pixel : {1e-3, 5e-3, 0.02, 0.1}) {
@@ -236,7 +122,9 @@ TEST(Screens, WhatCellsLeaveOutIsKnown) {
             }
             const double kept = field.displacement_angle_variance(10), lost = field.lost_angle_variance(10);
             EXPECT_NEAR((kept + lost) / all, 1, 0.03) << aperture << ' ' << pixel;
-            if (aperture == 0 && pixel > 0.01) EXPECT_GT(lost, 0.3 * all) << pixel;
+            if (aperture == 0 && pixel > 0.01) {
+                EXPECT_GT(lost, 0.3 * all) << pixel;
+            }
         }
 }
 
@@ -298,7 +186,8 @@ TEST(Screens, ModesDecorrelateAsTheGaussianOfAlpha) {
                 const std::size_t at = static_cast<std::size_t>((a + 192) % 192) * 97 + b;
                 const double k2 = kTau * kTau * (a * a + b * b);
                 const double scale = std::norm(before[at]) > 0 ? 1 : 0;
-                // weight every mode alike: divide by its own variance, here k^(11/3) to a constant factor and cutoff
+                // All modes get the same weight: each is divided by its variance, k^(-11/3) up to a constant and the
+                // cutoff.
                 const double power = 1 / Spectrum(spec, 0)(k2);
                 correlation += power * scale * std::real(after[at] * std::conj(before[at]));
                 norm += power * scale * 0.5 * (std::norm(before[at]) + std::norm(after[at]));
@@ -425,76 +314,6 @@ TEST(Screens, PaperSpectrumStartsAtItsLowestWavenumber) {
     const auto modes = band.spectrum_at(0);
     EXPECT_EQ(std::abs(modes[4 * 25]), 0);
     EXPECT_GT(std::abs(modes[5 * 25]), 0);
-}
-
-TEST(ScreenLayout, SlabsAreThickerThanTheOuterScaleAndFillThePath) {
-    TurbulenceSpec spec;
-    for (const double far : {0.5, 1.5, 5.0, 9.0, 300.0}) {
-        const auto screens = layout_screens(spec, {true, far, 0.3, 0.2, 1e-3, 0.05, 24});
-        EXPECT_LE(screens.size(), std::max<std::size_t>(1, static_cast<std::size_t>(far)));
-        EXPECT_LE(screens.size(), static_cast<std::size_t>(kMostScreens));
-        double w = 0;
-        for (const ScreenGeometry& s : screens) {
-            EXPECT_NEAR(s.w, w + s.thickness / 2, 1e-9);
-            w += s.thickness;
-            EXPECT_NEAR(s.aperture, 0.05 * (1 - s.w / far), 1e-12);
-            EXPECT_LE(std::max(s.nx, s.ny), kLargestSide);
-            if (screens.size() > 1) {
-                EXPECT_GE(s.thickness, spec.outer_scale);
-            }
-        }
-        EXPECT_NEAR(w, far, 1e-9);
-        // the table of the header: variance of the displacement angle against D/3
-        const auto error = [&](double D) {
-            double sum = 0;
-            for (const ScreenGeometry& s : screens) {
-                const double lever = slab_lever(s.w - s.thickness / 2, s.w + s.thickness / 2, D).length / D;
-                sum += lever * lever * s.thickness;
-            }
-            return sum / (D / 3) - 1;
-        };
-        if (far >= 2) {
-            EXPECT_NEAR(error(1), -0.25, 0.17);
-        }
-        for (double D = 4; D < far; D *= 1.02) EXPECT_NEAR(error(D), 0, kSlabError) << D;
-        // patterns that repeat within the view do so at different angles
-        for (std::size_t m = 1; m < screens.size(); ++m)
-            if (screens[m].Lx < 0.6 * screens[m].w) {
-                EXPECT_GT(std::abs(screens[m].Lx / screens[m].w - screens[m - 1].Lx / screens[m - 1].w),
-                          1e-3 * screens[m].Lx / screens[m].w);
-            }
-    }
-}
-
-TEST(ScreenLayout, OverridesAndErrors) {
-    TurbulenceSpec spec;
-    const ShotView view{true, 100, 0.3, 0.2, 1e-3, 0, 24};
-    spec.lattice = {64, 32, 10, 7};
-    spec.period = {3, 4, 1, 5};
-    const auto screens = layout_screens(spec, view);
-    ASSERT_EQ(screens.size(), 10u);
-    EXPECT_EQ(screens[3].nx, 64);
-    EXPECT_EQ(screens[3].ny, 32);
-    EXPECT_EQ(screens[3].nt, 7);
-    EXPECT_EQ(screens[3].Lx, 3);
-    EXPECT_EQ(screens[3].Ly, 4);
-    EXPECT_EQ(screens[3].T, 5);
-    for (const std::array<int, 4>& bad : {std::array{0, 32, 8, 7},
-                                          {32, 1, 8, 7},
-                                          {64, 64, 101, 7},
-                                          {64, 64, 0, 7},
-                                          {64, 64, 8, 0},
-                                          {1 << 30, 64, 8, 1}}) {
-        spec.lattice = bad;
-        EXPECT_THROW(layout_screens(spec, view), UserError);
-    }
-    spec.lattice = {32768, 32768, 8, 8};
-    const auto huge = layout_screens(spec, view);
-    EXPECT_GT(screens_bytes(spec, huge), 100'000'000'000u);
-    EXPECT_THROW(check_screens(spec, huge, 8'000'000'000u), UserError);
-    EXPECT_NO_THROW(check_screens(spec, screens, 8'000'000'000u));
-    spec.period = {0, 1, 1, 1};
-    EXPECT_THROW(layout_screens(spec, view), UserError);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "noise/turbulence/parameters/turbulence_spec.h"
+
 namespace eikonal {
 namespace {
 

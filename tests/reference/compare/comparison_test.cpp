@@ -1,5 +1,6 @@
 /// The warp judged by the tracer: statistics, picture errors and silhouettes against values worked out by hand, the
 /// frontier, the page, and scenes whose errors are known.
+/// Length: one case a measure, and the scenes that need them all.
 #include "reference/compare/comparison.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,8 @@
 #include <cmath>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "reference/compare/comparison_page.h"
 #include "reference/compare/comparison_table.h"
 #include "reference/compare/frontier.h"

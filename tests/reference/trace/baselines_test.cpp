@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
 #include "noise/medium/refractivity.h"
 #include "reference/trace/baselines.h"
 #include "tests/reference/trace/bent_ray_scenes.h"
@@ -124,7 +125,7 @@ TEST(Mirage, LayersConvergeToTheBentRay) {
     EXPECT_NEAR(std::log2(coarse / fine) / 2, 2, 0.2);
 }
 
-// They perturb the straight ray, which goes on down where the bent one turns back.
+// First and second order perturb the straight ray, which goes on down where the bent ray turns back.
 TEST(Mirage, PerturbationsKnowNoTurningRays) {
     const TestAir air({road(0.01)}, at_zero());
     const auto wall = geometry({plane({60, 0, 0}, {-1, 0, 0})}), floor = geometry({plane({0, 0, 0}, {0, 1, 0})});
@@ -140,8 +141,8 @@ TEST(Mirage, PerturbationsKnowNoTurningRays) {
     };
     for (const Integrator integrator : {Integrator::FirstOrder, Integrator::SecondOrder})
         EXPECT_GT(off(*wall, integrator, 0.7 * critical), 0.05);
-    // Steeper ones are the better the steeper they are, and meet the floor in the direction of a straight ray: where
-    // it lies oblique second order is no better than first.
+    // The steeper a ray, the smaller its error. It meets the floor in the direction of a straight ray. Where the floor
+    // is oblique, second order is no better than first order.
     for (const Integrator integrator : {Integrator::FirstOrder, Integrator::SecondOrder}) {
         const double gentle = off(*floor, integrator, 2 * critical), steep = off(*floor, integrator, 10 * critical);
         EXPECT_LT(gentle, 0.02);

@@ -11,6 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/medium_spec.h"
+#include "noise/medium/optics.h"
+#include "noise/profile/profile_spec.h"
+#include "noise/surface/surface_spec.h"
 #include "reference/trace/bent_ray.h"
 
 namespace eikonal::reference {
@@ -25,7 +30,7 @@ struct TestAir {
     Air field;
     AirInstant now;
     explicit TestAir(const std::vector<MediumSpec>& media, const OpticsSpec& optics = {})
-        : field(media, optics, {}, std::uint64_t{1} << 30), now(field.at(0)) {}
+        : field(media, optics, {.memory_limit = std::uint64_t{1} << 30}), now(field.at(0)) {}
 };
 
 inline ProfileSpec profile(ProfileKind kind) {
@@ -72,7 +77,7 @@ inline TraceSettings finest() {
     return settings;
 }
 
-/// What tracing with the tolerance of a usual render asks for.
+/// Settings with the tolerance of a usual render.
 inline TraceSettings usual() {
     TraceSettings settings;
     settings.pixel = 4e-4;

@@ -5,7 +5,9 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "noise/medium/optics.h"
 #include "noise/medium/refractivity.h"
+#include "noise/profile/profile_spec.h"
 #include "reference/trace/bent_ray.h"
 #include "tests/reference/trace/bent_ray_scenes.h"
 

@@ -1,10 +1,15 @@
-/// What makes the tracer quick must not cost accuracy: long strides between blobs and through lattices against the
+/// The tracer's shortcuts must not cost accuracy: long strides between blobs and through lattices against the
 /// finest tolerance, and first order's closed form against its integral.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/medium_spec.h"
+#include "noise/medium/optics.h"
+#include "noise/surface/surface_spec.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "reference/trace/bent_ray.h"
 
 namespace eikonal::reference {
@@ -18,7 +23,7 @@ struct Shot {
     TraceSettings settings;
 
     explicit Shot(const std::vector<MediumSpec>& media)
-        : field(media, {}, {}, std::uint64_t{1} << 30), now(field.at(0)), wall(scene(), dvec3(0)) {
+        : field(media, {}, {.memory_limit = std::uint64_t{1} << 30}), now(field.at(0)), wall(scene(), dvec3(0)) {
         settings.pixel = 7e-5;
     }
 
@@ -94,7 +99,7 @@ TEST(Strides, KeepTheToleranceInALattice) {
 }
 
 TEST(Strides, AreLongButPassNoBlobOver) {
-    // One small blob far away, off the ray by all that still matters.
+    // One small blob far away, at the largest distance from the ray that still matters.
     const double sigma = 0.01;
     for (const double b : {0.0, 0.7, 1.5, 2.0, 2.5, 3.0, 3.5}) {
         BlobsSpec spec;
@@ -111,14 +116,14 @@ TEST(Strides, AreLongButPassNoBlobOver) {
     }
 }
 
-// Above its layer a surface's force has a tail that never ends: it is straight air all the same.
+// Above its layer a surface's force has an endless tail. That air must still count as straight.
 TEST(Strides, AreOneBeyondALayerOfAnyMedia) {
     SurfaceSpec surface;
     surface.surface_temperature = 330;
     surface.dropoff = 0.02;
     BlobsSpec blobs;
     blobs.blobs = {{{0, 1, -10}, 0.1, 400}};
-    const Air field({surface, blobs}, {}, {}, std::uint64_t{1} << 30);
+    const Air field({surface, blobs}, {}, {.memory_limit = std::uint64_t{1} << 30});
     const AirInstant now = field.at(0);
     TraceSettings settings;
     settings.pixel = 7e-5;
@@ -142,7 +147,7 @@ TEST(KnownOrigin, ChangesNoBit) {
     Scene scene;
     scene.objects = {ground, sign};
     const Geometry geometry(scene, dvec3(0));
-    const Air field({surface}, {}, {}, std::uint64_t{1} << 30);
+    const Air field({surface}, {}, {.memory_limit = std::uint64_t{1} << 30});
     const AirInstant now = field.at(0);
     TraceSettings plain;
     plain.pixel = 7e-5;
@@ -158,7 +163,7 @@ TEST(KnownOrigin, ChangesNoBit) {
             EXPECT_EQ(a.at.x, b.at.x);
             EXPECT_EQ(a.at.p, b.at.p);
             EXPECT_EQ(a.hit, b.hit);
-            // Settings that know another place are no worse.
+            // Settings whose known origin is another place give the same result.
             const dvec3 beside = eye + dvec3(0.5, 0, 0);
             EXPECT_EQ(trace(now, &geometry, beside, d, plain).at.x, trace(now, &geometry, beside, d, known).at.x);
         }
@@ -172,10 +177,10 @@ TEST(ClosedForm, OfBlobsIsFirstOrdersIntegral) {
     EXPECT_LE(shot.off(closed, integral), closed.tolerance_px);
     shot.settings = closed;
     EXPECT_EQ(shot.trace_one(0).steps, 1);
-    // Exactly: what is left out goes with the tolerance.
+    // The difference shrinks with the tolerance.
     closed.tolerance_px = 1e-3;
     EXPECT_LE(shot.off(closed, integral), closed.tolerance_px);
-    // What first order cannot leave out is integrated.
+    // Where the closed form leaves out too much, first order integrates.
     closed.tolerance_px = 1e-6;
     shot.settings = closed;
     EXPECT_GT(shot.trace_one(0).steps, 1);

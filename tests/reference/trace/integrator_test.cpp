@@ -1,18 +1,18 @@
-/// Bent rays: order and error of every integrator, edges, surfaces met by curves, mirages, and what must never hang or
-/// be passed over.
+/// Bent rays: order and error of every integrator, perturbation theory, edges, and rays that must neither hang nor pass
+/// over thin things.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
-#include <sstream>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/optics.h"
 #include "noise/medium/refractivity.h"
-#include "reference/trace/baselines.h"
+#include "noise/profile/profile_spec.h"
+#include "noise/surface/surface_spec.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "reference/trace/bent_ray.h"
-#include "reference/trace/path.h"
-#include "reference/trace/perturbation.h"
 #include "tests/reference/trace/bent_ray_scenes.h"
 
 namespace eikonal::reference {
@@ -28,11 +28,11 @@ double luneburg_error(const TraceSettings& settings) {
 }
 
 TEST(Order, ShowsWhenStepsAreHalved) {
-    // Through Luneburg's sphere, with two jumps of F on the way, which must not spoil it.
+    // The way through Luneburg's sphere has two jumps of F, which must not lower the order.
     const std::pair<Integrator, double> methods[] = {
         {Integrator::Adaptive, 5}, {Integrator::Rk4, 4}, {Integrator::Leapfrog, 2}, {Integrator::Euler, 1}};
     for (const auto& [integrator, order] : methods) {
-        // The highest order comes down to rounding soon.
+        // The highest order soon reaches rounding.
         const int halvings = order == 5 ? 1 : 3;
         const double first = luneburg_error(fixed(integrator, 0.1));
         const double last = luneburg_error(fixed(integrator, 0.1 / (1 << halvings)));
@@ -87,7 +87,7 @@ TEST(Tolerance, BoundsTheErrorAndIsReported) {
     EXPECT_LE(glm::length(hit.at.x - dvec3(-1, 0, 0)), settings.tolerance_px * settings.pixel);
 }
 
-// Among blobs steps are as long as these: what they miss by luck their own estimates do not see.
+// Among blobs, steps are as long as a blob. The steps' estimates do not see what the steps miss.
 TEST(Tolerance, TheErrorIsNoLessThanItIsSaidToBe) {
     BlobsSpec blobs;
     blobs.blobs = {{{0, 0.8, -30}, 0.3, 600}, {{0.4, 0.7, -60}, 0.2, 700}, {{-0.6, 0.5, -50}, 0.25, 500}};
@@ -126,87 +126,6 @@ TEST(Tolerance, FixedStepsEstimateTheirErrors) {
 }
 
 // ---- Surfaces met by curves
-
-TEST(Surfaces, AreMetOnTheCurve) {
-    ProfileSpec spec = profile(ProfileKind::LinearSquared);
-    spec.axis = {0, 0, 1};
-    spec.slope = 1;
-    const TestAir air({spec});
-    // Parabola z = x²/4 against a plane, a quad (as triangles) and a sphere, whatever the tolerance.
-    const double x = 3, z = x * x / 4;
-    const dvec3 tilted = glm::normalize(dvec3(-0.4, 0.1, -1));
-    const dvec3 tangent = glm::normalize(dvec3(1, 0, x / 2)),
-                center = dvec3(x, 0, z) + 0.5 * glm::normalize(tangent + dvec3(0.3, 0, 0.3));
-    for (const double tolerance : {1e-9, 0.01, 10.0}) {
-        TraceSettings settings = usual();
-        settings.tolerance_px = tolerance;
-        for (const ObjectSpec& object : {plane({x, 0, z}, tilted), quad({x, 0, z}, tilted, 0.5), sphere(center, 0.5)}) {
-            const auto wall = geometry({object});
-            const BentHit hit = trace(air.now, wall.get(), {0, 0, 0}, {1, 0, 0}, settings);
-            ASSERT_TRUE(hit.hit) << tolerance;
-            // This curve is a polynomial: no method errs in it.
-            EXPECT_LE(glm::length(hit.at.x - dvec3(x, 0, z)), kClosedFormError) << tolerance;
-            EXPECT_EQ(hit.at.x, hit.surface.point);
-            EXPECT_NEAR(hit.at.u, x, kClosedFormError);
-            EXPECT_NEAR(hit.at.p.z, x / 2, kClosedFormError);
-            EXPECT_LT(glm::dot(hit.surface.normal, hit.at.p), 0);
-            EXPECT_NEAR(hit.length, 0.5 * (x * std::sqrt(1 + x * x / 4) + 2 * std::asinh(x / 2)), 1e-5);
-        }
-    }
-}
-
-TEST(Surfaces, GrazedAreMetOrPassed) {
-    ProfileSpec spec = profile(ProfileKind::LinearSquared);
-    spec.axis = {0, 0, 1};
-    spec.slope = 1;
-    const TestAir air({spec});
-    // The ray turns back at z = -s² above a floor, or below its level.
-    const double s = 0.1, c = std::sqrt(1 - s * s);
-    TraceSettings settings = usual();
-    settings.far = 3;
-    for (const double gap : {1e-3, 1e-6, 1e-9, -1e-6, -1e-3}) {
-        const auto floor = geometry({plane({0, 0, -s * s - gap}, {0, 0, 1})});
-        const BentHit hit = trace(air.now, floor.get(), {0, 0, 0}, {c, 0, -s}, settings);
-        EXPECT_EQ(hit.hit, gap < 0) << gap;
-        if (gap < 0) {
-            EXPECT_NEAR(hit.at.u, 2 * s - 2 * std::sqrt(-gap), 1e-8) << gap;
-        }
-    }
-    // A ball in the curve's bow: its chords cut it, the curve does not; and one that it just touches.
-    for (const double gap : {1e-4, -1e-4}) {
-        const dvec3 lowest{2 * s * c, 0, -s * s};
-        const auto ball = geometry({sphere(lowest + dvec3(0, 0, 0.01 + gap), 0.01)});
-        settings.tolerance_px = 200;  // coarse chords
-        const BentHit hit = trace(air.now, ball.get(), {0, 0, 0}, {c, 0, -s}, settings);
-        EXPECT_EQ(hit.hit, gap < 0) << gap;
-    }
-}
-
-TEST(Surfaces, BehindTheTurnAreMetOnTheWayBack) {
-    ProfileSpec spec = profile(ProfileKind::LinearSquared);
-    spec.slope = 1;
-    const TestAir air({spec});
-    // Up against the gradient and down again, past where it started.
-    const dvec3 d = glm::normalize(dvec3(0.01, -1, 0));
-    const auto ceiling = geometry({plane({0, 2, 0}, {0, -1, 0})});
-    const BentHit hit = trace(air.now, ceiling.get(), {0, 0, 0}, d, usual());
-    ASSERT_TRUE(hit.hit);
-    // y = d.y u + u²/4
-    EXPECT_NEAR(hit.at.u, -2 * d.y + 2 * std::sqrt(d.y * d.y + 2), 1e-8);
-}
-
-TEST(Surfaces, CostFewSegmentsInWeakAir) {
-    // Straight where there is no medium: one step to any distance.
-    const TestAir none({});
-    const auto wall = geometry({plane({1e5, 0, 0}, {-1, 0, 0})});
-    const BentHit hit = trace(none.now, wall.get(), {0, 0, 0}, glm::normalize(dvec3(1, 0.1, 0)), usual());
-    ASSERT_TRUE(hit.hit);
-    EXPECT_EQ(hit.steps, 1);
-    EXPECT_NEAR(hit.at.x.y, 1e4, 1e-8);
-    const BentHit gone = trace(none.now, wall.get(), {0, 0, 0}, {-1, 0, 0}, usual());
-    EXPECT_EQ(gone.end, BentHit::End::Escaped);
-    EXPECT_EQ(gone.at.x, dvec3(-1e6, 0, 0));
-}
 
 // ---- Perturbation
 
@@ -301,14 +220,14 @@ TEST(Steps, TrappedRaysEnd) {
         EXPECT_EQ(hit.end, BentHit::End::Unfinished);
         EXPECT_EQ(hit.steps, 500);
         EXPECT_TRUE(std::isfinite(hit.at.x.x + hit.at.p.x + hit.error_px));
-        // Sooner, if it may: after 32 times round.
+        // If it may, it ends sooner: after 32 turns.
         settings.end_trapped = true;
         settings.step_budget = 100000;
         const BentHit seen = trace(air.now, nullptr, {1, 0, 0}, {0, 1, 0}, settings);
         EXPECT_EQ(seen.end, BentHit::End::Trapped);
         EXPECT_LE(seen.steps, 8 * 250);
     }
-    // A ray in a guide at 80 degrees to its axis gets ahead, however often it turns.
+    // A ray in a guide at 80 degrees to the axis makes headway, however often it turns.
     ProfileSpec rod = profile(ProfileKind::Rod);
     rod.n0 = 1.5;
     rod.g = 0.3;
@@ -321,7 +240,8 @@ TEST(Steps, TrappedRaysEnd) {
     EXPECT_EQ(far.end, BentHit::End::Surface);
 }
 
-// Air in which rays lose their way, from mere shimmer to no way at all: what arrives is what arrives without looking.
+// Air from mere shimmer to one where every ray is trapped. Rays that arrive are the same with and without the early
+// end.
 TEST(Steps, OnlyTrappedRaysAreEndedEarly) {
     const auto wall = geometry({plane({0, 0, -3}, {0, 0, 1})});
     int arrived = 0, ended = 0;
@@ -365,7 +285,7 @@ TEST(Steps, EndWhereThereIsNoIndex) {
     const TestAir air({one_blob({0, 0, 0}, 0.1)}, absurd);
     const BentHit inside = trace(air.now, nullptr, {0, 0, 0}, {1, 0, 0}, usual());
     EXPECT_EQ(inside.end, BentHit::End::NoIndex);
-    // Towards it: turned back, or ended; never through, never hanging, always finite.
+    // A ray towards n <= 0 is turned back or ended. It never goes through or runs for ever, and it is always finite.
     for (const Integrator integrator : {Integrator::Adaptive, Integrator::Rk4, Integrator::Leapfrog, Integrator::Euler,
                                         Integrator::FirstOrder, Integrator::SecondOrder}) {
         for (int i = 0; i < 50; ++i) {
@@ -398,127 +318,6 @@ TEST(Steps, StartAnywhere) {
 }
 
 // ---- The path as text
-
-TEST(Path, IsWrittenSmoothlyUpToItsEnd) {
-    const TestAir air({profile(ProfileKind::Luneburg)});
-    TraceSettings settings = usual();
-    settings.u_end = 5;
-    const auto wall = geometry({plane({1.5, 0, 0}, {-1, 0, 0})});
-    std::ostringstream text;
-    const BentHit hit = write_path(air.now, wall.get(), {-2, 0.5, 0}, {1, 0, 0}, settings, text, "ray.csv");
-    ASSERT_TRUE(hit.hit);
-    std::istringstream lines(text.str());
-    std::string line;
-    std::getline(lines, line);
-    EXPECT_EQ(line, "u,x,y,z,px,py,pz");
-    int rows = 0;
-    double u_before = -1;
-    std::array<double, 7> row{};
-    dvec3 direction(1, 0, 0);
-    while (std::getline(lines, line)) {
-        std::replace(line.begin(), line.end(), ',', ' ');
-        std::istringstream numbers(line);
-        for (double& number : row) numbers >> number;
-        EXPECT_GT(row[0], u_before);
-        u_before = row[0];
-        const dvec3 d = glm::normalize(dvec3(row[4], row[5], row[6]));
-        EXPECT_LE(glm::length(d - direction), 1.2 * kPathTurn);
-        direction = d;
-        ++rows;
-    }
-    EXPECT_GT(rows, 40);
-    EXPECT_EQ(row[0], hit.at.u);
-    EXPECT_EQ(dvec3(row[1], row[2], row[3]), hit.at.x);
-}
-
-// x0(u) + x1(u) from the origin on, and p its derivative; what second order adds is closer to the bent ray.
-TEST(Path, OfFirstAndSecondOrderIsThePerturbedCurve) {
-    const double sigma = 0.3;
-    OpticsSpec strong;
-    strong.exaggeration = 20;
-    const TestAir air({one_blob({2, -0.2, 0}, sigma)}, strong);
-    const auto wall = geometry({plane({5, 0, 0}, {-1, 0, 0.3})});
-    const dvec3 origin{0, 0, 0}, d{1, 0, 0};
-    const double speed = air.now.speed(origin);
-    TraceSettings settings = usual();
-    settings.perspective = false;
-    settings.tolerance_px = 1e-6;
-    settings.pixel = 1;
-    settings.u_end = 10;
-    std::ostringstream ignored;
-    const BentHit truth = write_path(air.now, wall.get(), origin, d, settings, ignored, "ray.csv");
-    double error[2];
-    for (const bool second : {false, true}) {
-        settings.integrator = second ? Integrator::SecondOrder : Integrator::FirstOrder;
-        std::stringstream text;
-        const BentHit hit = write_path(air.now, wall.get(), origin, d, settings, text, "ray.csv");
-        ASSERT_TRUE(hit.hit);
-        EXPECT_NEAR(glm::dot(hit.at.x - dvec3(5, 0, 0), glm::normalize(dvec3(-1, 0, 0.3))), 0, 1e-12);
-        EXPECT_GT(hit.length, glm::length(hit.at.x));
-        error[second] = glm::length(hit.at.x - truth.at.x);
-        std::string line;
-        std::getline(text, line);
-        std::vector<RayState> rows;
-        while (std::getline(text, line)) {
-            std::replace(line.begin(), line.end(), ',', ' ');
-            std::istringstream numbers(line);
-            RayState& row = rows.emplace_back();
-            numbers >> row.u >> row.x.x >> row.x.y >> row.x.z >> row.p.x >> row.p.y >> row.p.z;
-        }
-        ASSERT_GT(rows.size(), 10u);
-        EXPECT_EQ(rows.front().u, 0);
-        EXPECT_EQ(rows.front().x, origin);
-        EXPECT_EQ(rows.front().p, speed * d);
-        EXPECT_EQ(rows.back().x, hit.at.x);
-        for (std::size_t i = 1; i < rows.size(); ++i) {
-            const double h = rows[i].u - rows[i - 1].u;
-            const dvec3 mean = 0.5 * (rows[i].p + rows[i - 1].p);
-            EXPECT_LE(glm::length((rows[i].x - rows[i - 1].x) / h - mean), 2e-4) << i;
-        }
-        if (second) continue;
-        // By Simpson's rule: x1(u) = ∫ (u - w) F(x0(w)) dw.
-        const RayState& end = rows.back();
-        constexpr int kParts = 2000;
-        dvec3 x1(0);
-        for (int i = 0; i <= kParts; ++i) {
-            const double w = end.u * i / kParts, weight = i == 0 || i == kParts ? 1 : i % 2 ? 4 : 2;
-            x1 += weight * (end.u - w) * air.now.force(origin + w * speed * d, speed * d);
-        }
-        x1 *= end.u / (3 * kParts);
-        EXPECT_LE(glm::length(origin + end.u * speed * d + x1 - end.x), 1e-6);
-        EXPECT_GT(glm::length(x1), 1e-3);
-    }
-    EXPECT_LT(error[1], 0.3 * error[0]);
-}
-
-// In a rod F = -w² x⊥, w = n0 g, so that x1 and x2 of a straight ray are polynomials.
-TEST(Path, OfFirstAndSecondOrderKeepsTheTolerance) {
-    ProfileSpec rod = profile(ProfileKind::Rod);
-    rod.axis = {0, 0, 1};
-    rod.n0 = 1.5;
-    rod.g = 0.05;
-    const TestAir air({rod});
-    const dvec3 origin{0.5, 0.2, 0}, d = glm::normalize(dvec3(0.05, 0, 1));
-    const double u = 20, w2 = 1.5 * 1.5 * 0.05 * 0.05, speed = air.now.speed(origin);
-    for (const bool second : {false, true})
-        for (const double tolerance : {1e-5, 1e-8, 1e-11}) {
-            TraceSettings settings = usual();
-            settings.integrator = second ? Integrator::SecondOrder : Integrator::FirstOrder;
-            settings.perspective = false;
-            settings.pixel = 1;
-            settings.tolerance_px = tolerance;
-            settings.u_end = u;
-            std::ostringstream ignored;
-            const BentHit end = write_path(air.now, nullptr, origin, d, settings, ignored, "ray.csv");
-            EXPECT_EQ(end.end, BentHit::End::Escaped);
-            for (int k = 0; k < 2; ++k) {
-                const double a = origin[k], b = speed * d[k];
-                double x = a + b * u - w2 * (a * u * u / 2 + b * std::pow(u, 3) / 6);
-                if (second) x += w2 * w2 * (a * std::pow(u, 4) / 24 + b * std::pow(u, 5) / 120);
-                EXPECT_NEAR(end.at.x[k], x, tolerance) << second << k;
-            }
-        }
-}
 
 }  // namespace
 }  // namespace eikonal::reference

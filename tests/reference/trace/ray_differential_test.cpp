@@ -4,6 +4,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/optics.h"
+#include "noise/profile/profile_spec.h"
 #include "tests/reference/trace/bent_ray_scenes.h"
 
 namespace eikonal::reference {

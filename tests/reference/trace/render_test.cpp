@@ -1,5 +1,6 @@
-/// Pictures through bent air against closed forms: displacements, mirages, lenses, mirrors, glass, shadowgraphs, marks
-/// of rays that have no end, and the same bytes whatever the threads.
+/// Pictures through bent air against closed forms: displacements, mirages, lenses, mirrors and glass; the marks of rays
+/// that have no end; and the same bytes for any number of threads.
+/// Length: each effect needs a scene of its own, whose picture is known in closed form.
 #include "reference/trace/render.h"
 
 #include <fmt/format.h>
@@ -8,106 +9,20 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <numeric>
 
+#include "noise/blobs/blobs_spec.h"
+#include "noise/profile/profile_spec.h"
+#include "noise/surface/surface_spec.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "reference/trace/ray_tree.h"
+#include "tests/reference/trace/render_scenes.h"
 
 namespace eikonal::reference {
 namespace {
-
-constexpr int kWidth = 48, kHeight = 36;
-
-RenderSettings settings(int samples = 1) {
-    RenderSettings s;
-    s.samples = samples;
-    return s;
-}
-
-RenderSettings straight(int samples = 1) {
-    RenderSettings s = settings(samples);
-    s.straight = true;
-    return s;
-}
-
-/// A camera at the height of 1.5 m that looks along -z.
-Scene scene_with(std::vector<ObjectSpec> objects, double fov = 20) {
-    Scene scene;
-    scene.file = "scene.toml";
-    scene.camera.resolution = {kWidth, kHeight};
-    scene.camera.position = {0, 1.5, 0};
-    scene.camera.look_at = {0, 1.5, -1};
-    scene.camera.horizontal_fov = fov;
-    scene.objects = std::move(objects);
-    return scene;
-}
-
-ObjectSpec quad(dvec3 center, dvec3 normal, double side, dvec3 color = dvec3(0.5)) {
-    ObjectSpec o;
-    o.shape = ObjectShape::Quad;
-    o.origin = center;
-    o.normal = normal;
-    o.size = {side, side};
-    o.color = color;
-    return o;
-}
-
-ObjectSpec sphere(dvec3 center, double radius, dvec3 color = dvec3(0.5)) {
-    ObjectSpec o;
-    o.shape = ObjectShape::Sphere;
-    o.center = center;
-    o.radius = radius;
-    o.color = color;
-    return o;
-}
-
-ObjectSpec glass(ObjectSpec o, double index) {
-    o.refractive_index = index;
-    return o;
-}
-
-Camera camera_of(const Scene& scene) {
-    return CameraPath(scene.camera, kWidth, kHeight).at(1);
-}
-
-std::size_t at(int x, int y) {
-    return static_cast<std::size_t>(y * kWidth + x);
-}
-
-dvec3 colour(const RenderedFrame& frame, int x, int y) {
-    const std::size_t i = 4 * at(x, y);
-    return {frame.color[i], frame.color[i + 1], frame.color[i + 2]};
-}
-
-bool same(const std::vector<float>& a, const std::vector<float>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
-}
-
-bool same(const RenderedFrame& a, const RenderedFrame& b) {
-    return same(a.color, b.color) && same(a.depth, b.depth) && same(a.length, b.length) && same(a.u, b.u) &&
-           same(a.v, b.v) && same(a.id, b.id) && same(a.steps, b.steps) && same(a.error, b.error) &&
-           same(a.magnification, b.magnification);
-}
-
-void expect_finite(const RenderedFrame& frame) {
-    for (const auto* plane : {&frame.color, &frame.u, &frame.v, &frame.id, &frame.steps, &frame.error})
-        for (const float value : *plane) ASSERT_TRUE(std::isfinite(value));
-    for (const auto* plane : {&frame.depth, &frame.length})
-        for (const float value : *plane) ASSERT_FALSE(std::isnan(value));
-}
-
-/// Mirage of a hot road: the far wall's lower part is seen mirrored.
-Scene mirage() {
-    Scene scene = scene_with({quad({0, 0, -400}, {0, 0, 1}, 100)}, 2);
-    scene.objects.emplace_back();  // the road, a plane
-    scene.camera.look_at = {0, 1.5, -400};
-    scene.media = {SurfaceSpec{.surface_temperature = 340, .dropoff = 0.05}};
-    return scene;
-}
 
 // n = 1 + 1e-6 y over 500 m: the ray falls or rises by 0.125 m, seen 250 µrad off its place (PHYSICS.md#closed-forms).
 TEST(Render, WeakGradientShiftsBy250Microradians) {
@@ -126,7 +41,8 @@ TEST(Render, WeakGradientShiftsBy250Microradians) {
         }
 }
 
-// Straight stretches before, between and behind blobs count as bent ones do: the ray is a hair longer than straight.
+// The length of a ray includes its straight stretches before, between and behind blobs. It is slightly longer than the
+// straight ray.
 TEST(Render, LengthIsThatOfTheWholeRay) {
     Scene scene = scene_with({quad({0, 1.5, -4}, {0, 0, 1}, 10)}, 30);
     BlobsSpec cloud;
@@ -177,7 +93,7 @@ TEST(Render, MirageShowsTheWallBelowTheHorizon) {
         const std::size_t i = at(kWidth / 2, y);
         if (bent.magnification[i] < 0) {
             ++mirrored;
-            // Straight rays would see the road, bent ones the wall at its depth, from higher up.
+            // Straight rays would see the road. Bent rays see a higher place of the wall, at the wall's depth.
             EXPECT_EQ(bent.id[i], 1) << y;
             EXPECT_NEAR(bent.depth[i], 400, 1e-3);
             EXPECT_GT(bent.length[i], 400);
@@ -190,11 +106,11 @@ TEST(Render, MirageShowsTheWallBelowTheHorizon) {
     EXPECT_EQ(bent.folded() % kWidth, 0u) << "whole rows are folded";
     EXPECT_GT(bent.folded(), 0u);
     EXPECT_EQ(bent.trapped() + bent.without_index(), 0u);
-    // High above nothing is mirrored.
+    // Rays high above the road are not mirrored.
     EXPECT_GT(bent.magnification[at(kWidth / 2, 0)], 0);
 }
 
-// What the tracer does for speed over a lone surface changes nothing beyond the tolerance.
+// The shortcuts over a lone surface change nothing beyond the tolerance.
 TEST(Render, LoneSurfaceGivesWhatTheFieldGives) {
     const Scene scene = mirage();
     for (const Integrator integrator : {Integrator::Adaptive, Integrator::FirstOrder}) {
@@ -207,7 +123,7 @@ TEST(Render, LoneSurfaceGivesWhatTheFieldGives) {
         TraceSettings plain = quick;
         plain.lone = nullptr;
         plain.tolerance_px *= 1e-3;
-        if (integrator == Integrator::FirstOrder) plain.step = 0.05;  // its quadrature knows no tolerance
+        if (integrator == Integrator::FirstOrder) plain.step = 0.05;  // its quadrature has no tolerance
         for (int y = 0; y < kHeight; y += 3) {
             const CameraRay ray = camera_ray(camera, 7.5, y + 0.5);
             const dvec3 d = glm::normalize(ray.direction);
@@ -245,7 +161,7 @@ TEST(Render, RaysWithoutAnEndAreMarkedAndBlack) {
         s.rays.step_budget = 10;
         EXPECT_GT(Renderer(scene, s).render(1).unfinished(), 0u) << exaggeration;
     }
-    // What is tried first takes no more steps than it may, and tells how far the rest would go on.
+    // A probe takes no more steps than it may, and it estimates the steps that are left.
     {
         Scene scene = scene_with({quad({0, 1.5, -20}, {0, 0, 1}, 100, {1, 1, 1})});
         ProfileSpec rod;
@@ -261,7 +177,7 @@ TEST(Render, RaysWithoutAnEndAreMarkedAndBlack) {
         EXPECT_EQ(probe.steps_to_come, 32.0 * (kStepBudget - 50));
         EXPECT_NEAR(probe.time(64, 0) / (2 * probe.seconds / (1 + probe.samples)), kStepBudget / 50.0, 1e-6);
     }
-    // Nothing but marks: the camera itself where there is no index.
+    // The camera itself is at n <= 0, so all pixels are marked.
     Scene scene = scene_with({quad({0, 1.5, -20}, {0, 0, 1}, 100, {1, 1, 1})});
     ProfileSpec rod;
     rod.profile = ProfileKind::Linear;
@@ -273,8 +189,7 @@ TEST(Render, RaysWithoutAnEndAreMarkedAndBlack) {
     for (std::size_t i = 0; i < frame.color.size(); ++i) EXPECT_EQ(frame.color[i], i % 4 == 3 ? 1.0f : 0.0f);
 }
 
-// Parallel rays meet at the point opposite to where they enter, on the sphere itself.
-// Rays that were only tried: what they still take is told from the air ahead, here a layer that ends at some height.
+// The steps that a tried ray would still take are estimated from the air ahead: here a layer that ends at some height.
 TEST(Render, AProbeKnowsTheStepsToCome) {
     Scene scene = scene_with({quad({0, 0, -300}, {0, 0, 1}, 10)}, 20);
     TurbulenceSpec air;
@@ -301,6 +216,7 @@ TEST(Render, AProbeKnowsTheStepsToCome) {
     EXPECT_EQ(probe.beyond, 0u);
 }
 
+// Parallel rays meet on the sphere, opposite to where they enter.
 TEST(Render, LuneburgLensFocusesParallelRays) {
     Scene scene = scene_with({sphere({0, 1.5, -6}, 0.05, {1, 0, 0}), quad({0, 1.5, -20}, {0, 0, 1}, 100)});
     ProfileSpec lens;
@@ -357,7 +273,7 @@ TEST(Render, FresnelAtNormalIncidenceAndGrazing) {
     EXPECT_NEAR(fresnel_reflectance(1, 1, 1.5, 1), 0.04, 1e-15);
     EXPECT_NEAR(fresnel_reflectance(1.5, 1, 1, 1), 0.04, 1e-15);
     EXPECT_NEAR(fresnel_reflectance(1, 1e-9, 1.5, std::sqrt(1 - 1 / 2.25)), 1, 1e-7);
-    // A pane of black behind glass, seen along its normal: what is left is the reflection of the white wall behind.
+    // A black pane behind glass, seen along its normal, shows only the reflection of the white wall behind the camera.
     Scene scene =
         scene_with({glass(quad({0, 1.5, -5}, {0, 0, 1}, 4), 1.5), quad({0, 1.5, 3}, {0, 0, -1}, 100, dvec3(1))}, 0.5);
     const dvec3 c = colour(Renderer(scene, straight()).render(1), kWidth / 2, kHeight / 2);
@@ -394,7 +310,7 @@ TEST(Render, AGlassSphereRefractsBySnell) {
     }
 }
 
-// Air in which rays fold spreads what they err by; rays' own estimates do not know, those tried again do.
+// Air in which rays fold spreads their errors. The rays' own estimates do not show it. Rays that are tried again do.
 TEST(Render, TellsWhereTheAirSpreadsErrors) {
     for (const bool strong : {false, true}) {
         TurbulenceSpec air;
@@ -451,7 +367,7 @@ TEST(Render, TheAirMovesOnAndTheCameraToo) {
     EXPECT_TRUE(same(first, renderer.render(100)));
 }
 
-// The air is bent light's own; u and v lead from each frame's camera to where its own straight rays see the same.
+// u and v lead to the pixel where straight rays of the same frame's camera see the same point.
 TEST(Render, AMovingCameraMeasuresAgainstItsOwnStraightRays) {
     ObjectSpec wall = quad({0, 0, -9}, {0.3, 0.2, 1}, 200);  // oblique: depth tells the place
     Scene scene = scene_with({wall});
@@ -480,114 +396,6 @@ TEST(Render, AMovingCameraMeasuresAgainstItsOwnStraightRays) {
             }
         EXPECT_GT(furthest, 0.5) << frame;
     }
-}
-
-/// A wall of 2 m at z = -5, lit along -z by a sun that comes from behind the camera.
-Scene shadow_scene() {
-    Scene scene = scene_with({quad({0, 1.5, -5}, {0, 0, 1}, 2, dvec3(1))}, 20);
-    scene.light = LightSpec{.direction = {0, 0, -1}, .color = dvec3(1), .ambient = dvec3(0)};
-    return scene;
-}
-
-Hit on_wall(double u, double v) {
-    Hit hit;
-    hit.object = 0;
-    hit.uv = {u, v};
-    return hit;
-}
-
-/// The map of a scene's first quad.
-struct Lit {
-    SceneAir air;
-    AirInstant field;
-    Geometry geometry;
-    Shadowgraph map;
-    explicit Lit(const Scene& scene, int rays)
-        : air(scene, {}),
-          field(air.at(1)),
-          geometry(scene, scene.camera.position),
-          map(scene, geometry, field, air.trace_settings(camera_of(scene)), rays) {}
-
-    double mean(int n = 64) const {
-        double sum = 0;
-        for (int j = 0; j < n; ++j)
-            for (int i = 0; i < n; ++i) sum += *map.irradiance(on_wall((i + 0.5) / n, (j + 0.5) / n));
-        return sum / n / n;
-    }
-};
-
-TEST(Shadowgraph, StraightLightIsUniform) {
-    const Lit lit(shadow_scene(), 512);
-    for (double v = 0.02; v < 1; v += 0.04)
-        for (double u = 0.02; u < 1; u += 0.04) EXPECT_NEAR(*lit.map.irradiance(on_wall(u, v)), 1, 0.01);
-    EXPECT_NEAR(lit.mean(), 1, 0.005);
-    EXPECT_FALSE(lit.map.irradiance([] {
-        Hit other;
-        other.object = 7;
-        return other;
-    }()));
-}
-
-// A hot blob is a weak diverging lens: n = 1 + n_j e^{-r²/σ²}, a whole pass bends by θ(b) = -2√π n_j (b/σ) e^{-b²/σ²}
-// outwards, so at distance z the centre is lit by 1/(1 + z dθ/db)², dθ/db = 2√π |n_j|/σ.
-TEST(Shadowgraph, AHotBlobCastsADarkCentreAndABrightRing) {
-    for (const double z : {3.0, 12.0}) {  // between wall and camera, and behind it
-        Scene scene = shadow_scene();
-        const double sigma = 0.15;
-        BlobsSpec blobs;
-        blobs.blobs = {{{0, 1.5, -5 + z}, sigma, 600}};
-        scene.media = {blobs};
-        scene.optics.exaggeration = 300 / z;
-        const Lit lit(scene, 1024);
-        const IndexLaw law = index_law(scene.optics);
-        const double n = 300 / z * std::abs(law.above_ambient(600));
-        const double spread = z * 2 * std::sqrt(std::numbers::pi) * n / sigma;
-        EXPECT_NEAR(*lit.map.irradiance(on_wall(0.5, 0.5)), 1 / ((1 + spread) * (1 + spread)), 0.03);
-        double brightest = 0, where = 0;
-        for (double r = 0; r < 0.4; r += 0.002)
-            if (const double e = *lit.map.irradiance(on_wall(0.5 + r, 0.5)); e > brightest) brightest = e, where = r;
-        EXPECT_GT(brightest, 1.1);
-        EXPECT_GT(2 * where, sigma);  // the wall is 2 m wide
-        EXPECT_LT(2 * where, 4 * sigma);
-        EXPECT_NEAR(lit.mean(), 1, 0.01);
-    }
-}
-
-// A cold one focuses: at z = 1/(2√π n_j/σ) the centre is a caustic, far brighter than at half the distance.
-TEST(Shadowgraph, AColdBlobFocusesAtItsFocalLength) {
-    const auto centre = [](double part) {
-        Scene scene = shadow_scene();
-        scene.optics.exaggeration = 100;
-        const double sigma = 0.2, n = 100 * index_law(scene.optics).above_ambient(200);
-        const double focal = sigma / (2 * std::sqrt(std::numbers::pi) * n);
-        BlobsSpec blobs;
-        blobs.blobs = {{{0, 1.5, -5 + part * focal}, sigma, 200}};
-        scene.media = {blobs};
-        const Lit lit(scene, 1024);
-        EXPECT_NEAR(lit.mean(), 1, 0.01);
-        return *lit.map.irradiance(on_wall(0.5, 0.5));
-    };
-    const double at_focus = centre(1), beyond = centre(2);
-    EXPECT_NEAR(centre(0.5), 4, 1);  // 1/(1 - 1/2)²
-    EXPECT_GT(at_focus, 3 * 4);
-    // Beyond it a ring of the blob, b = σ √ln(z/f), still meets on the axis: a line of light, thinner than the focus.
-    EXPECT_GT(beyond, 3 * 4);
-    EXPECT_LT(beyond, at_focus);
-}
-
-TEST(Shadowgraph, IsWhatTheWallShows) {
-    Scene scene = shadow_scene();
-    BlobsSpec blobs;
-    blobs.blobs = {{{0, 1.5, -3}, 0.15, 600}};
-    scene.media = {blobs};
-    scene.optics.exaggeration = 100;
-    RenderSettings s = settings(4);
-    s.light_rays = 512;
-    const RenderedFrame lit = Renderer(scene, s).render(1);
-    s.light_rays = 0;
-    const RenderedFrame plain = Renderer(scene, s).render(1);
-    EXPECT_NEAR(colour(plain, kWidth / 2, kHeight / 2).r, 1, 1e-3);
-    EXPECT_LT(colour(lit, kWidth / 2, kHeight / 2).r, 0.6);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Where bent rays meet the depth buffer: silhouettes, slopes, and the three ways compared.
 #include "warp/displace/depth/depth_meeting.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@ namespace eikonal {
 namespace {
 
 using DepthOf = std::function<double(int x, int y)>;
-using BendOf = std::function<std::array<double, 4>(int x, int y, double z)>;  ///< X and S
+using GridOf = std::function<std::array<double, 4>(int x, int y, double z)>;  ///< X and S of a node
 
 constexpr PixelWindow kWindow{-6, -4, 60, 48};
 
@@ -20,7 +21,7 @@ DepthPlane plane_of(const DepthOf& depth) {
     return {kWindow, std::move(metres)};
 }
 
-std::vector<DisplacementGrid> bands_of(const BendOf& bend, std::vector<double> depths) {
+std::vector<DisplacementGrid> grids_of(const GridOf& bend, std::vector<double> depths) {
     std::vector<DisplacementGrid> grids(1);
     DisplacementGrid& grid = grids.front();
     grid.depths = std::move(depths);
@@ -57,14 +58,14 @@ Map meet(const std::vector<DisplacementGrid>& grids, const DepthPlane& depth, De
 }
 
 /// All rays bend alike at depth 2 m: X = (z - 2) a, d = (1 - 2/z) a.
-BendOf sideways(double ax, double ay) {
+GridOf sideways(double ax, double ay) {
     return [=](int, int, double z) { return std::array{(z - 2) * ax, (z - 2) * ay, ax, ay}; };
 }
 
 constexpr std::array kHow{DepthMeeting::March, DepthMeeting::FixedPoint, DepthMeeting::Own};
 
-TEST(Meet, ConstantDepthIsTheSameForAll) {
-    const auto grids = bands_of(sideways(3.3, -1.7), {2, 100});
+TEST(DepthMeeting, ConstantDepthIsTheSameForAll) {
+    const auto grids = grids_of(sideways(3.3, -1.7), {2, 100});
     const DepthPlane depth = plane_of([](int, int) { return 37.0; });
     for (const DepthMeeting how : kHow)
         for (const Shift& d : meet(grids, depth, how).d) {
@@ -74,11 +75,11 @@ TEST(Meet, ConstantDepthIsTheSameForAll) {
 }
 
 /// A post 5 m away, still (the bend is at 5 m), before a wall at 300 m that moves by 4 px.
-TEST(Meet, ForegroundStaysStillAndIsNeverDragged) {
+TEST(DepthMeeting, ForegroundStaysStillAndIsNeverDragged) {
     const auto post = [](int x) { return x >= 20 && x < 26; };
     const DepthPlane depth = plane_of([&](int x, int) { return post(x) ? 5.0 : 300.0; });
     for (const double a : {4.0, -4.0, 0.3, 12.5}) {
-        const auto grids = bands_of(
+        const auto grids = grids_of(
             [a](int, int, double z) {
                 return std::array{std::max(0.0, z - 5) * a, 0.0, z > 5 ? a : 0.0, 0.0};
             },
@@ -112,14 +113,14 @@ TEST(Meet, ForegroundStaysStillAndIsNeverDragged) {
 }
 
 /// A ray that swerves aside and back must stop at the post it crosses on the way, though the wall behind is clear.
-TEST(Meet, MarchFindsWhatStandsInTheWay) {
+TEST(DepthMeeting, MarchFindsWhatStandsInTheWay) {
     const DepthPlane depth = plane_of([](int x, int) { return x >= 20 && x < 26 ? 20.0 : 300.0; });
     // d rises to 8 px at 30 m and falls to 0 at 300 m
     const auto d_of = [](double z) { return z < 30 ? 8 * (z - 2) / 28 : 8 * (300 - z) / 270; };
     std::vector<double> depths;
     for (double z = 2; z < 300; z *= 1.05) depths.push_back(z);
     depths.push_back(300);
-    const auto grids = bands_of(
+    const auto grids = grids_of(
         [&](int, int, double z) {
             const double h = 1e-4 * z;
             return std::array{z * d_of(z), 0.0, ((z + h) * d_of(z + h) - (z - h) * d_of(z - h)) / (2 * h), 0.0};
@@ -134,7 +135,7 @@ TEST(Meet, MarchFindsWhatStandsInTheWay) {
 }
 
 /// Ground that recedes upwards: the first z at which the facet under the ray is no farther than z, by brute force.
-TEST(Meet, SlopedGroundIsTheFirstRoot) {
+TEST(DepthMeeting, SlopedGroundIsTheFirstRoot) {
     const auto ground = [](int, int y) { return 1200.0 / (y + 12); };
     const DepthPlane depth = plane_of(ground);
     const auto clamped = [&](double y) {
@@ -142,7 +143,7 @@ TEST(Meet, SlopedGroundIsTheFirstRoot) {
                       std::clamp(static_cast<int>(std::floor(y + 0.5)), kWindow.y0, kWindow.y0 + kWindow.height - 1));
     };
     for (const double a : {2.6, -2.6, 0.4, -7.5}) {
-        const auto grids = bands_of(sideways(0, a), {2, 200});
+        const auto grids = grids_of(sideways(0, a), {2, 200});
         const Map march = meet(grids, depth, DepthMeeting::March), fixed = meet(grids, depth, DepthMeeting::FixedPoint);
         for (int y = kWindow.y0; y < kWindow.y0 + kWindow.height; ++y) {
             double expected = 0;
@@ -157,21 +158,21 @@ TEST(Meet, SlopedGroundIsTheFirstRoot) {
     }
 }
 
-TEST(Meet, AnyDisplacementIsSafe) {
+TEST(DepthMeeting, AnyDisplacementIsSafe) {
     const DepthPlane depth = plane_of([](int x, int y) { return (x * 7 + y * 13) % 5 < 2 ? 1e-6 : 1e9; });
     for (const double a : {0.0, 1e-30, 1e5, -1e30}) {
-        const auto grids = bands_of(sideways(a, -a), {1e-6, 1e9});
+        const auto grids = grids_of(sideways(a, -a), {1e-6, 1e9});
         for (const DepthMeeting how : kHow)
             for (const Shift& d : meet(grids, depth, how, 1'000'000).d)
                 EXPECT_FALSE(std::isnan(d.x) || std::isnan(d.y));
     }
 }
 
-TEST(DepthPlane, BlockExtremaCoverTheReach) {
+TEST(DepthPlane, RangesOfBlocksCoverTheRadius) {
     const DepthPlane depth = plane_of([](int x, int y) { return 10 + (1000 + x * 31 + y * 17) % 23; });
-    for (const int reach : {0, 1, 5, 9, 1000000}) {
+    for (const int radius : {0, 1, 5, 9, 1000000}) {
         const PixelWindow tile{3, 5, 20, 9};
-        const auto ranges = depth.around(tile, reach);
+        const auto ranges = depth.around(tile, radius);
         const auto block = [](int v, int origin) { return (v - origin) / DepthPlane::kBlock; };
         const int columns = block(22, kWindow.x0) - block(3, kWindow.x0) + 1;
         for (int y = 5; y < 14; ++y)
@@ -179,7 +180,7 @@ TEST(DepthPlane, BlockExtremaCoverTheReach) {
                 const auto& r =
                     ranges[static_cast<std::size_t>((block(y, kWindow.y0) - block(5, kWindow.y0)) * columns +
                                                     block(x, kWindow.x0) - block(3, kWindow.x0))];
-                const int far = std::min(reach, 60);
+                const int far = std::min(radius, 60);
                 for (int j = -far; j <= far; ++j)
                     for (int i = -far; i <= far; ++i) {
                         const float z = depth.at(x + i, y + j);

@@ -1,3 +1,4 @@
+// Displacement grids: interpolation between nodes and depths, and beyond the last.
 #include "warp/displace/grid/displacement_grid.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +58,7 @@ TEST(DisplacementGrid, FifthOrderPolynomialsAndCubicsInDepthAreExact) {
             }
 }
 
-TEST(DisplacementGrid, BeyondItsLayersDisplacementStaysFinite) {
+TEST(DisplacementGrid, BeyondItsDepthsDisplacementStaysFinite) {
     for (const auto interpolation : {DepthInterpolation::Hermite, DepthInterpolation::Linear}) {
         const DisplacementGrid grid = filled({0, 0, 8, 8}, 2, {2, 6}, 1, true, interpolation);
         GridRow row;
@@ -66,7 +67,7 @@ TEST(DisplacementGrid, BeyondItsLayersDisplacementStaysFinite) {
             const Shift d = row.at(3, z);
             EXPECT_TRUE(std::isfinite(d.x) && std::isfinite(d.y)) << z;
         }
-        // before the first layer X ∝ z², or z; far beyond the last, d tends to the slope
+        // before the first depth X ∝ z², or z; far beyond the last, d tends to the slope
         const float part = interpolation == DepthInterpolation::Hermite ? 0.25f : 1.0f;
         EXPECT_FLOAT_EQ(row.at(3, 0.5).x, part * row.at(3, 2.0).x);
         EXPECT_NEAR(row.at(3, 1e12).x, synthetic(3, 5, 6, 1)[2], 1e-5);
@@ -85,6 +86,17 @@ TEST(DisplacementGrid, NodesAreAnchoredSoThatPiecesAgreeWithTheWhole) {
             EXPECT_EQ(a.at(x, 4.4).y, b.at(x, 4.4).y);
         }
     }
+}
+
+TEST(DisplacementGrid, PlacesAgreeWithRowsAtPixelsAndAreExactBetweenThem) {
+    DisplacementGrid grid = filled({0, 0, 40, 20}, 4, {2, 5}, 5, false, DepthInterpolation::Hermite);
+    GridRow row;
+    row.start(grid, 9);
+    EXPECT_NEAR(grid.at(grid.place(13, 9), 1)[0], row.at(13, 5).x, 2e-6);
+    const Node expected = synthetic(13.375, 9.25, 5, 5);  // both are multiples of spacing/256
+    const Node found = grid.at(grid.place(13.375, 9.25), 1);
+    for (int c = 0; c < 4; ++c) EXPECT_NEAR(found[c], expected[c], 2e-5);
+    EXPECT_EQ(grid.at(grid.place(-1e6, 4), 0)[0], grid.row(3, 0)[0][0]) << "the border continues";
 }
 
 TEST(DisplacementGrid, LargestShiftBoundsNodesAndTheFarLimit) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "warp/displace/displacer.h"
 
 namespace eikonal {

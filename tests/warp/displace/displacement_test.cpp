@@ -1,3 +1,5 @@
+// Displacement maps of every model against quadrature, against each other and against what is expected of them.
+// Length: the models are compared with each other, so they stand in one file.
 #include "warp/displace/displacer.h"
 
 #include <gtest/gtest.h>
@@ -7,8 +9,10 @@
 #include <cstring>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
 #include "noise/turbulence/lattice/lattice.h"
 #include "noise/turbulence/lattice/path_tables.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "tests/noise/trigonometric_sum.h"
 #include "tests/warp/displace/displacement_scenes.h"
 #include "warp/displace/grid/ray_frame.h"
@@ -196,7 +200,7 @@ TEST(Displacement, PathsOfTooManyCellsAreRefusedLongOnesWarnedOf) {
             const Displacer displacer(scene_with(spec), small(6000));
             ADD_FAILURE();
         } catch (const UserError& error) {
-            for (const char* part : {"medium.0", "steps", "6000 m", "form=\"screens\"", "--far", "period"})
+            for (const char* part : {"medium.0", "steps", "6000 m", "form=\"screens\"", "`far`", "period"})
                 EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
         }
         const Displacer displacer(scene_with(spec), small(1000));
@@ -204,14 +208,13 @@ TEST(Displacement, PathsOfTooManyCellsAreRefusedLongOnesWarnedOf) {
     }
 }
 
-TEST(Displacement, CancelledFramesEnd) {
-    static bool stop;
-    stop = false;
+TEST(Displacement, AFrameEndsOnceAStopIsRequested) {
+    std::stop_source stop;
     DisplacerSettings settings = small(1.8);
-    settings.cancelled = [] { return stop; };
+    settings.stop = stop.get_token();
     const Displacer displacer(scene_with(lattice_spec()), settings);
     map_of(displacer, 1, kSmall, 1.8);
-    stop = true;
+    stop.request_stop();
     EXPECT_THROW(map_of(displacer, 1, kSmall, 1.8), FrameError);
 }
 
@@ -261,7 +264,8 @@ TurbulenceSpec screen_spec(double L0 = 1e4) {
 }
 
 // Single axis. The map's own weight is 1 - w/D in either projection, so parallel rays count 1.093 in the displacement
-// too; their 3.28 is the angle of arrival, which no displaced object shows (tests/screens_test.cpp measures it).
+// too; their 3.28 is the angle of arrival, which no displaced object shows (tests/noise/turbulence/screens_test.cpp
+// measures it).
 TEST(Displacement, ScreensHaveTheVarianceOfAngleOfArrival) {
     const double L0 = 1e4, far = 12 * L0;
     for (const bool perspective : {true, false}) {
@@ -396,7 +400,7 @@ TEST(Displacement, AForegroundStaysStillBeforeAShimmeringBackground) {
 TEST(Displacement, NodesApartCostLittleAccuracy) {
     for (const double far : {100.0, 500.0}) {
         Scene scene = long_view();
-        auto& spec = std::get<TurbulenceSpec>(scene.media[0]);
+        auto& spec = (*scene.media[0].get_if<TurbulenceSpec>());
         spec.outer_scale = 8;
         const double cell = 0.05 / 3;
         spec.lattice = {{128, 128, 6, 1}};
@@ -424,7 +428,7 @@ TEST(Displacement, PiecesThreadsAndFramesGiveTheSameBits) {
     Scene lattice = scene_with(lattice_spec());
     lattice.camera.horizontal_fov = 60;
     for (const Scene& scene : {long_view(0.01), lattice, orthographic(lattice_spec(), {0, 0, -1}, {0, 1, 0})}) {
-        const double far = std::get<TurbulenceSpec>(scene.media[0]).form == TurbulenceForm::Screens ? 400 : 1.5;
+        const double far = (*scene.media[0].get_if<TurbulenceSpec>()).form == TurbulenceForm::Screens ? 400 : 1.5;
         const Displacer displacer(scene, sized(90, 70, far));
         const PixelWindow window{-9, -7, 108, 84};
         std::vector<float> metres;
@@ -461,7 +465,7 @@ TEST(Displacement, ExtremesStayFinite) {
                 if (form != TurbulenceForm::Screens && (far > 100 || (fov > 170 && far > 1)))
                     continue;  // as many steps as eddies
                 Scene scene = scene_with(lattice_spec());
-                auto& spec = std::get<TurbulenceSpec>(scene.media[0]);
+                auto& spec = (*scene.media[0].get_if<TurbulenceSpec>());
                 spec.form = form;
                 spec.lattice.reset();
                 spec.period.reset();
@@ -488,7 +492,7 @@ TEST(Displacement, GainScalesAndZeroStrengthMovesNothing) {
     const Displacer displacer(scene, sized(32, 32, 100));
     const Map one = map_of(displacer, 1, {0, 0, 32, 32}, 100), three = map_of(displacer, 1, {0, 0, 32, 32}, 100, 3);
     for (std::size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(three[i], 3 * one[i], 1e-5 * std::abs(three[i]) + 1e-9);
-    std::get<TurbulenceSpec>(scene.media[0]).cn2 = 0;
+    (*scene.media[0].get_if<TurbulenceSpec>()).cn2 = 0;
     for (const float v : map_of(Displacer(scene, sized(32, 32, 100)), 1, {0, 0, 32, 32}, 100)) EXPECT_EQ(v, 0);
 }
 

@@ -8,7 +8,11 @@
 #include <string>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/medium_spec.h"
 #include "noise/medium/refractivity.h"
+#include "noise/surface/surface_spec.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "tests/noise/trigonometric_sum.h"
 #include "tests/warp/displace/displacement_scenes.h"
 #include "warp/displace/models/first_order.h"

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "noise/base/error.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "tests/warp/displace/displacement_scenes.h"
 #include "warp/displace/displacer.h"
 
@@ -28,7 +29,7 @@ class MovingCamera : public ::testing::Test {
 
 TEST_F(MovingCamera, ASidewaysMoveShiftsAScreenByItsParallax) {
     Scene scene = long_view();
-    auto& spec = std::get<TurbulenceSpec>(scene.media[0]);
+    auto& spec = (*scene.media[0].get_if<TurbulenceSpec>());
     spec.outer_scale = 50;
     spec.lattice = {{256, 256, 1, 1}};  // a single screen at 40 m of 80
     const DisplacerSettings settings = sized(128, 96, 80);

@@ -1,4 +1,5 @@
 // Second-order rays, and the error that maps state of themselves.
+// Length: the stated error is judged by the full ray equation, which is tested first.
 #include "warp/displace/models/second_order.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,11 @@
 #include <cmath>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
+#include "noise/profile/profile_spec.h"
+#include "noise/surface/surface.h"
+#include "noise/surface/surface_spec.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "warp/displace/choose_model.h"
 #include "warp/displace/stated_error.h"
 
@@ -112,7 +118,7 @@ TEST(SecondOrder, DiffersFromFirstOrderByTheSquareOfTheStrength) {
 // The middle of a very hot blob has no index: no map from there, and no telling what a first-order one is off by.
 TEST(SecondOrder, WithoutAnIndexThereIsNoMap) {
     Scene scene = blob_scene(2e4);
-    std::get<BlobsSpec>(scene.media[0]).blobs[0].center = scene.camera.position;
+    (*scene.media[0].get_if<BlobsSpec>()).blobs[0].center = scene.camera.position;
     EXPECT_THROW(map_of(scene, settings_for(40), Model::SecondOrder, 40), FrameError);
     StatedError stated;
     for (const float v : map_of(scene, settings_for(40), Model::FirstOrder, 40, &stated)) ASSERT_TRUE(std::isfinite(v));
@@ -123,9 +129,9 @@ TEST(SecondOrder, WithoutAnIndexThereIsNoMap) {
 // Every kind of medium: the steps of a map's rays against finer ones.
 TEST(SecondOrder, StepsAreAsAccurateAsStated) {
     for (const Scene& scene : {blob_scene(300), lattice_scene(false), screen_scene(2e-13)}) {
-        const double depth = std::holds_alternative<BlobsSpec>(scene.media[0]) ? 40
-                             : scene.camera.horizontal_fov == 1                ? 600
-                                                                               : 2;
+        const double depth = (scene.media[0].get_if<BlobsSpec>() != nullptr) ? 40
+                             : scene.camera.horizontal_fov == 1              ? 600
+                                                                             : 2;
         DisplacerSettings settings = settings_for(depth);
         settings.model = Model::SecondOrder;
         const Displacer displacer(scene, settings);
@@ -321,7 +327,7 @@ TEST(StatedError, KnowOfHolesInTheGround) {
         return instant.stated_error(rows, &plane, DepthMeeting::March, uv.data()).p50;
     };
     const double slope = -camera.slope(0, kHeight - 23).y, cosine = 1 / std::sqrt(1 + slope * slope);
-    const SurfaceIndex layer(std::get<SurfaceSpec>(scene.media[0]), index_law(scene.optics));
+    const SurfaceIndex layer((*scene.media[0].get_if<SurfaceSpec>()), index_law(scene.optics));
     const double turned = cosine * (1 - layer.above_ambient(0));  // n is near 1
     const double below = std::sqrt(1 - turned * turned) / turned;
     EXPECT_NEAR(stated(true), camera.f_px * (slope - below), 0.1 * camera.f_px * (slope - below));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "noise/blobs/blobs_spec.h"
 #include "noise/math/random.h"
 #include "warp/displace/grid/ray_frame.h"
 

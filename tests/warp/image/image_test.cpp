@@ -1,5 +1,5 @@
-// Pictures: what goes in comes out. Windows, metadata, types and stored bits through every kind of file; linear light
-// and back; channel kinds; depth rules; files that are broken or cannot be written.
+/// Pictures in and out: windows, metadata, types and stored bits are kept by every kind of file; colour goes to linear
+/// light and back; channels have the right kind; broken files and failed writes are errors.
 #include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/half.h>
 #include <OpenImageIO/imagebuf.h>
@@ -7,141 +7,20 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
-#include <cmath>
 #include <cstring>
 #include <fstream>
-#include <functional>
 #include <limits>
 
 #include "noise/base/error.h"
+#include "tests/warp/image/image_fixture.h"
 #include "warp/image/channels.h"
-#include "warp/image/depth_map.h"
 #include "warp/image/picture.h"
 #include "warp/image/pixel_codec.h"
 #include "warp/image/plane.h"
 
 namespace eikonal {
 namespace {
-namespace fs = std::filesystem;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
-
-class ImageTest : public testing::Test {
-  protected:
-    fs::path folder = fs::temp_directory_path() / ("eikonal-image-test-" + std::to_string(getpid()));
-    void SetUp() override {
-        fs::remove_all(folder);
-        fs::create_directories(folder);
-    }
-    void TearDown() override { fs::remove_all(folder); }
-    std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-    }
-
-    /// Writes a file with OpenImageIO alone, then the same through read_picture and write_picture, and compares.
-    void expect_round_trip(const std::string& name, const std::vector<ImageSpec>& specs, bool lossy = false) {
-        SCOPED_TRACE(name);
-        const fs::path original = folder / ("in_" + name), copy = folder / ("out_" + name);
-        write_reference(original, specs);
-        const Picture picture = read_picture(original);
-        ASSERT_EQ(picture.parts.size(), specs.size());
-        write_picture(copy, picture);
-        const Picture again = read_picture(copy);
-        ASSERT_EQ(again.parts.size(), specs.size());
-        EXPECT_EQ(again.format, picture.format);
-        for (std::size_t i = 0; i < specs.size(); ++i) {
-            const Part &a = picture.parts[i], &b = again.parts[i];
-            expect_same_spec(a.spec, b.spec);
-            if (!lossy) {
-                EXPECT_EQ(a.pixels, b.pixels) << "part " << i;
-            }
-        }
-    }
-
-    static void expect_same_spec(const ImageSpec& a, const ImageSpec& b) {
-        EXPECT_EQ(a.channelnames, b.channelnames);
-        EXPECT_EQ(a.format, b.format);
-        EXPECT_EQ(a.channelformats, b.channelformats);
-        EXPECT_EQ(std::tie(a.x, a.y, a.width, a.height), std::tie(b.x, b.y, b.width, b.height));
-        EXPECT_EQ(std::tie(a.full_x, a.full_y, a.full_width, a.full_height),
-                  std::tie(b.full_x, b.full_y, b.full_width, b.full_height));
-        EXPECT_EQ(std::tie(a.tile_width, a.tile_height), std::tie(b.tile_width, b.tile_height));
-        for (const auto& attribute : a.extra_attribs) {
-            const OIIO::ParamValue* other = b.find_attribute(attribute.name());
-            ASSERT_NE(other, nullptr) << attribute.name();
-            EXPECT_EQ(attribute.get_string(), other->get_string()) << attribute.name();
-        }
-    }
-
-    /// Any bytes that are a valid picture: small values that differ from pixel to pixel and channel to channel.
-    static std::vector<std::byte> content(const ImageSpec& spec) {
-        std::vector<std::byte> pixels(spec.image_bytes(true));
-        const std::size_t stride = spec.pixel_bytes(true);
-        std::size_t offset = 0;
-        for (int c = 0; c < spec.nchannels; ++c) {
-            const TypeDesc type = spec.channelformat(c);
-            for (std::size_t i = 0; i < spec.image_pixels(); ++i) {
-                std::byte* at = pixels.data() + i * stride + offset;
-                const auto code = static_cast<std::uint32_t>(i * 7 + static_cast<std::size_t>(c) * 1001);
-                if (type == TypeDesc::UINT32)
-                    std::memcpy(at, &code, 4);
-                else {
-                    const float value = static_cast<float>(code % 997) / 997.0f;
-                    encode_values(static_cast<TypeDesc::BASETYPE>(type.basetype), &value, 1, at, stride, 1);
-                }
-            }
-            offset += type.size();
-        }
-        return pixels;
-    }
-
-    static void write_reference(const fs::path& path, const std::vector<ImageSpec>& specs) {
-        auto output = OIIO::ImageOutput::create(path.string());
-        ASSERT_TRUE(output);
-        const bool announced = specs.size() > 1 && !output->supports("appendsubimage");
-        for (std::size_t i = 0; i < specs.size(); ++i) {
-            ASSERT_TRUE(i > 0       ? output->open(path.string(), specs[i], OIIO::ImageOutput::AppendSubimage)
-                        : announced ? output->open(path.string(), static_cast<int>(specs.size()), specs.data())
-                                    : output->open(path.string(), specs[i]))
-                << output->geterror();
-            ASSERT_TRUE(output->write_image(TypeDesc::UNKNOWN, content(specs[i]).data())) << output->geterror();
-        }
-        ASSERT_TRUE(output->close());
-    }
-
-    static ImageSpec spec(int width, int height, std::vector<std::string> names, TypeDesc type) {
-        ImageSpec s(width, height, static_cast<int>(names.size()), type);
-        s.channelnames = std::move(names);
-        s.alpha_channel = s.z_channel = -1;
-        for (int c = 0; c < s.nchannels; ++c) {
-            if (s.channelnames[static_cast<std::size_t>(c)] == "A") s.alpha_channel = c;
-            if (s.channelnames[static_cast<std::size_t>(c)] == "Z") s.z_channel = c;
-        }
-        return s;
-    }
-
-    /// A part in memory with given channels, as if read from an EXR.
-    static Part part_of(const ImageSpec& s, const std::string& format = "openexr") {
-        Part part;
-        part.spec = s;
-        part.pixels = content(s);
-        part.transfer = transfer_of(s, format);
-        part.premultiplied = s.get_int_attribute("oiio:UnassociatedAlpha") == 0;
-        classify_channels(part, format);
-        return part;
-    }
-
-    static std::string message_of(const std::function<void()>& action) {
-        try {
-            action();
-        } catch (const std::exception& error) {
-            return error.what();
-        }
-        return "";
-    }
-};
 
 ImageSpec with_metadata(ImageSpec s) {
     s.attribute("PixelAspectRatio", 2.0f);
@@ -483,103 +362,6 @@ TEST_F(ImageTest, FailedWritesLeaveNothing) {
 }
 
 // ---- depth ------------------------------------------------------------------------------------------------------
-
-class DepthTest : public ImageTest {
-  protected:
-    const PixelWindow window{0, 0, 4, 1};
-
-    static Picture picture(const std::vector<float>& values, TypeDesc type, std::vector<std::string> names = {"Z"}) {
-        Part part = part_of(spec(static_cast<int>(values.size() / names.size()), 1, names, type));
-        encode_values(static_cast<TypeDesc::BASETYPE>(type.basetype), values.data(), 1, part.pixels.data(), type.size(),
-                      values.size());
-        return {{part}, "openexr"};
-    }
-    std::vector<float> metres(const Picture& p, const DepthOptions& options) const {
-        return depth_from_picture(p, "d.exr", options, window, window).metres;
-    }
-    using Metres = std::vector<float>;
-    static constexpr float kInf = std::numeric_limits<float>::infinity();
-    static constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-};
-
-TEST_F(DepthTest, Types) {
-    DepthOptions options;
-    options.far = 500;
-    // NaN has no exact code in encode_values (it is colour's), hence set by hand.
-    Picture z = picture({2, kInf, 0, 1e10f}, TypeDesc::FLOAT);
-    EXPECT_EQ(metres(z, options), Metres({2, 500, 500, 500}));
-    std::memcpy(z.parts[0].pixels.data() + 4, &kNan, 4);
-    EXPECT_EQ(metres(z, options), Metres({2, 500, 500, 500}));
-    options.type = DepthType::Ray;
-    EXPECT_TRUE(depth_from_picture(z, "d.exr", options, window, window).along_ray);
-    options.type = DepthType::Inverse;
-    EXPECT_EQ(metres(picture({2, 0.5f, 0, 1e-12f}, TypeDesc::FLOAT), options), Metres({0.5f, 2, 500, 500}));
-}
-
-TEST_F(DepthTest, Ranges) {
-    DepthOptions options;
-    options.far = 500;
-    options.range = {{10, 110}};
-    EXPECT_EQ(metres(picture({0, 1, 0.5f, 0.25f}, TypeDesc::FLOAT), options), Metres({10, 110, 60, 35}));
-    EXPECT_EQ(metres(picture({0, 1, 0.2f, 0.6f}, TypeDesc::UINT8), options), Metres({10, 110, 30, 70}));
-    options.type = DepthType::Inverse;
-    options.range = {{1, 4}};
-    EXPECT_EQ(metres(picture({0, 1, 1.0f / 3, 0.2f}, TypeDesc::UINT8), options), Metres({500, 1, 2, 2.5f}));
-    EXPECT_EQ(metres(picture({0, 1, 1.0f / 3, 0.2f}, TypeDesc::UINT16), options), Metres({500, 1, 2, 2.5f}));
-}
-
-TEST_F(DepthTest, Errors) {
-    DepthOptions options;
-    const auto message = [&](const Picture& p) { return message_of([&] { metres(p, options); }); };
-    EXPECT_NE(message(picture({0.5f, 1, 1, 1}, TypeDesc::UINT8)).find("--depth-range NEAR,FAR"), std::string::npos);
-    EXPECT_THROW(metres(picture({0.5f, 1, 1, 1}, TypeDesc::UINT16), options), UserError);
-    EXPECT_NE(message(picture({-1, 2, -kInf, 1}, TypeDesc::FLOAT)).find("2 negative"), std::string::npos);
-    EXPECT_NE(message(picture({0, 0, 0, 0}, TypeDesc::FLOAT)).find("only zeros"), std::string::npos);
-    EXPECT_NE(message(picture({1, 2, 3}, TypeDesc::FLOAT)).find("3x1 pixels, the picture 4x1"), std::string::npos);
-    options.channel = "depth.Q";
-    EXPECT_NE(message(picture({1, 2, 3, 4}, TypeDesc::FLOAT)).find("no channel 'depth.Q'; it has Z"),
-              std::string::npos);
-    options.channel.clear();
-    options.type = DepthType::Inverse;
-    for (const auto& range : {std::array<double, 2>{0, 1}, {2, 2}, {-1, 3}, {1, std::nan("")}}) {
-        options.range = range;
-        EXPECT_THROW(check_depth_options(options), UserError);
-    }
-}
-
-TEST_F(DepthTest, FindsItsChannelAndWindow) {
-    DepthOptions options;
-    const Metres values = {1, 2, 3, 4};
-    EXPECT_EQ(metres(picture(values, TypeDesc::FLOAT, {"whatever"}), options), values);
-    EXPECT_EQ(metres(picture({1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4}, TypeDesc::FLOAT, {"R", "G", "B"}), options), values);
-    EXPECT_THROW(metres(picture({1, 1, 5, 2, 2, 2, 3, 3, 3, 4, 4, 4}, TypeDesc::FLOAT, {"R", "G", "B"}), options),
-                 UserError);
-    EXPECT_EQ(metres(picture({9, 1, 9, 2, 9, 3, 9, 4}, TypeDesc::FLOAT, {"A", "Depth"}), options), values);
-    options.channel = "z";
-    EXPECT_EQ(metres(picture(values, TypeDesc::FLOAT), options), values) << "case does not matter";
-    options.channel = "far.Z";
-    Picture parts = picture({9, 9, 9, 9}, TypeDesc::FLOAT);
-    parts.parts.push_back(picture(values, TypeDesc::FLOAT).parts[0]);
-    parts.parts[1].spec.attribute("name", "far");
-    EXPECT_EQ(metres(parts, options), values);
-
-    // Footage with overscan, depth without: what the map lacks is background.
-    options = {};
-    options.far = 77;
-    const PixelWindow overscan{-1, -1, 6, 2};
-    EXPECT_EQ(depth_from_picture(picture(values, TypeDesc::FLOAT), "d", options, overscan, window).metres,
-              Metres({77, 77, 77, 77, 77, 77, 77, 1, 2, 3, 4, 77}));
-    const float nan = std::nanf("");
-    EXPECT_THROW(depth_from_picture(picture({nan, 0, nan, 0}, TypeDesc::FLOAT), "d", options, overscan, window),
-                 FrameError);
-}
-
-TEST_F(DepthTest, MatteFromAFile) {
-    Picture matte = picture({1, 0.5f, 1, 2, 1, -1, 1, 0}, TypeDesc::FLOAT, {"R", "A"});
-    write_picture(folder / "m.exr", matte);
-    EXPECT_EQ(read_matte(folder / "m.exr", "", window, window), Metres({0.5f, 1, 0, 0}));
-    EXPECT_EQ(read_matte(folder / "m.exr", "R", window, window), Metres({1, 1, 1, 1}));
-}
 
 }  // namespace
 }  // namespace eikonal

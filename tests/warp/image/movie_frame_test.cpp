@@ -1,4 +1,5 @@
-// Frames of movies as codes and as linear light: what is still stays, what returns is the same.
+/// Frames of movies as codes and as linear light. Still pixels keep their codes, and unchanged light gives the same
+/// codes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ MovieFrame noise_frame(const MovieFormat& format, unsigned seed) {
         if (!format.has_plane(plane)) continue;
         auto& codes = frame.planes[static_cast<std::size_t>(plane)];
         codes.resize(static_cast<std::size_t>(format.plane_width(plane) * format.plane_height(plane)));
-        // Around the middle, so that R'G'B' stays in gamut: what lies far outside cannot come back from PQ or HLG.
+        // Codes are around the middle, so that R'G'B' stays in gamut. PQ and HLG cannot bring back values far outside.
         const bool colour = !format.rgb && (plane == 1 || plane == 2);
         const auto largest = (1u << format.depth) - 1;
         for (auto& code : codes)

@@ -1,121 +1,25 @@
-// Movies in and out: codes kept, streams kept, clear errors. Sources are made by the ffmpeg program in a temporary
-// folder.
+/// Movies in and out: codes and streams are kept, and errors name the movie.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <numeric>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "noise/base/error.h"
+#include "tests/warp/image/movie_fixture.h"
 #include "warp/image/movie_frame.h"
-#include "warp/image/movie_libav.h"
 #include "warp/image/movie_reader.h"
 #include "warp/image/movie_writer.h"
 
 namespace eikonal {
 namespace {
-
-namespace fs = std::filesystem;
-
-class Movie : public testing::Test {
-  protected:
-    Movie() {
-        std::string pattern = (fs::temp_directory_path() / "eikonal-movie-XXXXXX").string();
-        if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-        folder_ = pattern;
-    }
-    ~Movie() override { fs::remove_all(folder_); }
-
-    fs::path file(const std::string& name) const { return folder_ / name; }
-
-    static std::string output_of(const std::string& command) {
-        std::string text;
-        FILE* pipe = popen(command.c_str(), "r");
-        std::array<char, 4096> block;
-        for (std::size_t n; pipe && (n = fread(block.data(), 1, block.size(), pipe)) > 0;) text.append(block.data(), n);
-        EXPECT_TRUE(pipe && pclose(pipe) == 0) << command;
-        return text;
-    }
-    /// ffmpeg ARGUMENTS name
-    fs::path make(const std::string& arguments, const std::string& name) const {
-        output_of("ffmpeg -nostdin -v error -y " + arguments + " '" + file(name).string() + "' 2>&1");
-        return file(name);
-    }
-    fs::path test_picture(const std::string& options, const std::string& name, int frames = 10,
-                          const std::string& size = "96x64") const {
-        return make(
-            "-f lavfi -i testsrc2=size=" + size + ":rate=24 -frames:v " + std::to_string(frames) + " " + options, name);
-    }
-    static std::string probe(const fs::path& path, const std::string& what) {
-        return output_of("ffprobe -v error " + what + " '" + path.string() + "'");
-    }
-    static std::string stream_md5(const fs::path& path, const std::string& map) {
-        return output_of("ffmpeg -nostdin -v error -i '" + path.string() + "' -map " + map + " -c copy -f md5 -");
-    }
-    static std::string picture_md5(const fs::path& path) {
-        return output_of("ffmpeg -nostdin -v error -i '" + path.string() + "' -map 0:v -f md5 -");
-    }
-    static std::string bytes(const fs::path& path) {
-        std::ifstream in(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    std::vector<std::string> left_over() const {
-        std::vector<std::string> names;
-        for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename());
-        return names;
-    }
-
-    /// Copies a movie through linear light with nothing moved, and returns its warnings.
-    std::vector<std::string> pass_through(const fs::path& from, const fs::path& to, MovieSettings settings = {}) const {
-        std::vector<std::string> warnings;
-        settings.warn = [&](const std::string& line) { warnings.push_back(line); };
-        const std::vector<int> chosen = settings.frames;
-        MovieReader reader(from);
-        MovieWriter writer(to, reader, settings);
-        MovieFrame frame;
-        while (reader.next(frame)) {
-            if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), frame.number) == chosen.end()) continue;
-            const LinearImage image = load_frame(frame);
-            store_frame(frame, image, std::vector<std::uint8_t>(image.data.area(), 0));
-            writer.write(frame);
-        }
-        writer.finish();
-        return warnings;
-    }
-
-    template <class Action>
-    static std::string message_of(const Action& action) {
-        try {
-            action();
-        } catch (const std::runtime_error& error) {
-            return error.what();
-        }
-        return "";
-    }
-
-    fs::path folder_;
-};
-
-std::vector<std::int64_t> time_stamps(const fs::path& path) {
-    MovieReader reader(path);
-    std::vector<std::int64_t> result;
-    MovieFrame frame;
-    while (reader.next(frame)) result.push_back(frame.pts);
-    return result;
-}
 
 TEST_F(Movie, LosslessFamiliesKeepEveryCode) {
     for (const std::string pixel_format :
@@ -219,7 +123,7 @@ TEST_F(Movie, OtherContainers) {
     EXPECT_EQ(codec(file("out.webm")).substr(0, 3), "vp9");
 }
 
-/// What a listener hears of a stream of 440 Hz between silences.
+/// The audible part of a stream with a tone of 440 Hz between silences.
 struct Heard {
     double length = 0;        ///< [s]
     double from = 0, to = 0;  ///< of the tone [s]
@@ -286,7 +190,7 @@ TEST_F(Movie, AudioThatTheContainerCannotHoldIsCodedAgain) {
         EXPECT_NEAR(after.frequency, before.frequency, 2);
         EXPECT_NEAR(after.rms / before.rms, 1, 0.1);
         EXPECT_EQ(time_stamps(file(c.target)).size(), time_stamps(source).size());
-        // picture and sound begin together: the encoder's delay moves neither
+        // Picture and sound begin together. The encoder's delay moves neither.
         EXPECT_EQ(time_stamps(file(c.target)).front(), 0);
 
         pass_through(source, file("again" + c.target));
@@ -303,7 +207,7 @@ TEST_F(Movie, AudioThatTheContainerCannotHoldIsCodedAgain) {
     }
 }
 
-// Two pieces of sound with nothing between them: the second stays in its place.
+// Two pieces of sound with a gap between them. The second keeps its time.
 TEST_F(Movie, GapsOfAudioThatIsCodedAgainBecomeSilence) {
     const fs::path source = make(
         "-f lavfi -i testsrc2=size=96x64:rate=24 -f lavfi -i sine=440:sample_rate=44100 -t 3 -c:v libx264 -pix_fmt "
@@ -448,125 +352,6 @@ TEST_F(Movie, BadFiles) {
     fs::resize_file(source, fs::file_size(source) / 2);  // the index is at the end
     EXPECT_NE(open(source).find("cannot be read as a movie"), std::string::npos);
     for (const std::string& name : left_over()) EXPECT_EQ(open(file(name)).find('\n'), std::string::npos);
-}
-
-/// Reads to the end: numbers of the frames that came, and messages of those that did not.
-struct Reading {
-    std::vector<int> good;
-    std::vector<std::string> errors;
-};
-Reading read_all(MovieReader& reader) {
-    Reading reading;
-    MovieFrame frame;
-    for (int guard = 0; guard < 1000; ++guard) {
-        const int expected = reader.next_number();
-        try {
-            if (!reader.next(frame)) return reading;
-            reading.good.push_back(frame.number);
-            EXPECT_EQ(frame.number, expected);
-        } catch (const FrameError& error) {
-            reading.errors.push_back(error.what());
-            EXPECT_NE(reading.errors.back().find(": frame " + std::to_string(expected) + ":"), std::string::npos)
-                << reading.errors.back();
-        }
-    }
-    ADD_FAILURE() << "reading does not end";
-    return reading;
-}
-
-/// Turns the bits of frame `number`, of `count` of about the same size, in a movie without inter-frame coding.
-void damage(const fs::path& movie, std::size_t number, std::size_t count) {
-    std::ifstream in(movie, std::ios::binary);
-    std::string data{std::istreambuf_iterator<char>(in), {}};
-    const std::size_t middle = data.size() * (2 * number - 1) / (2 * count);
-    for (std::size_t i = 0; i < 40; ++i) data[middle + i] = static_cast<char>(~data[middle + i]);
-    std::ofstream(movie, std::ios::binary) << data;
-}
-
-TEST_F(Movie, CutOffMoviesNameTheFrame) {
-    for (const std::string options : {"-c:v libx264 -pix_fmt yuv420p -movflags faststart in.mp4", "-c:v ffv1 in.mkv",
-                                      "-c:v mpeg4 -q:v 2 in.avi", "-c:v mjpeg in.mov -movflags faststart"}) {
-        const bool faststart = options.find("mjpeg") != std::string::npos;
-        const std::string name = faststart ? "in.mov" : options.substr(options.rfind(' ') + 1);
-        const fs::path source = test_picture(
-            faststart ? "-c:v mjpeg -movflags faststart" : options.substr(0, options.rfind(' ')), name, 60);
-        fs::resize_file(source, fs::file_size(source) * 3 / 4);
-        MovieReader reader(source);
-        MovieFrame frame;
-        int good = 0;
-        std::string message;
-        for (bool more = true; more;) {
-            message = message_of([&] {
-                while ((more = reader.next(frame))) ++good;
-            });
-            if (!message.empty()) break;
-        }
-        EXPECT_NE(message.find(source.string() + ": frame "), std::string::npos) << name << " " << message;
-        EXPECT_GT(good, 20) << name;
-        EXPECT_LT(good, 60) << name;
-        for (int guard = 0; guard < 100; ++guard)  // further reading ends
-            if (message_of([&] { reader.next(frame); }).empty() && !reader.skip()) break;
-        EXPECT_FALSE(reader.skip());
-    }
-}
-
-TEST_F(Movie, DamagedFrameInTheMiddle) {
-    const fs::path source = test_picture("-c:v ffv1 -level 3 -slicecrc 1 -pix_fmt yuv420p", "in.mkv", 30);
-    damage(source, 15, 30);
-    MovieReader reader(source);
-    const Reading reading = read_all(reader);
-    EXPECT_EQ(reading.good.size(), 29U);
-    EXPECT_EQ(reading.errors.size(), 1U);
-    EXPECT_EQ(reading.good.back(), 30);
-}
-
-// A transport stream that marks a packet as broken: that frame is lost, but neither those after it nor the good end.
-TEST_F(Movie, BrokenPacketInTheMiddleIsOneFrame) {
-    constexpr std::size_t kPacket = 188;
-    const fs::path source = test_picture("-c:v mpeg2video -g 1 -pix_fmt yuv420p", "in.ts", 30);
-    std::string data = bytes(source);
-    for (std::size_t at = data.size() / kPacket / 2 * kPacket; at < data.size(); at += kPacket) {
-        const bool video = (data[at + 1] & 0x1f) == 1 && data[at + 2] == 0, starts = data[at + 1] & 0x40;
-        if (!video || starts) continue;
-        data[at + 1] = static_cast<char>(data[at + 1] | 0x80);  // transport error
-        break;
-    }
-    std::ofstream(source, std::ios::binary) << data;
-    MovieReader reader(source);
-    const Reading reading = read_all(reader);
-    EXPECT_EQ(reading.good.size(), 29U);
-    ASSERT_EQ(reading.errors.size(), 1U) << reading.errors.back();
-    EXPECT_NE(reading.errors[0].find("damaged"), std::string::npos) << reading.errors[0];
-    EXPECT_EQ(reading.good.back(), 30);
-}
-
-TEST_F(Movie, DamagedFirstFramesAreLikeAnyOthers) {
-    const fs::path source = test_picture("-c:v ffv1 -level 3 -slicecrc 1 -pix_fmt yuv420p", "in.mkv", 10);
-    damage(source, 1, 10);
-    damage(source, 2, 10);
-    MovieReader reader(source);
-    EXPECT_EQ(reader.format().width, 96);
-    const Reading reading = read_all(reader);
-    EXPECT_EQ(reading.good, (std::vector<int>{3, 4, 5, 6, 7, 8, 9, 10}));
-    EXPECT_EQ(reading.errors.size(), 2U);
-
-    MovieReader skipping(source);
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(skipping.skip());
-    EXPECT_EQ(skipping.next_number(), 4);
-
-    for (std::size_t i = 3; i <= 10; ++i) damage(source, i, 10);
-    const std::string message = message_of([&] { MovieReader{source}; });
-    EXPECT_NE(message.find(": frame 1: "), std::string::npos) << message;
-}
-
-TEST_F(Movie, MessagesOfObjectsWithoutAClassAreHarmless) {
-    struct {
-        const AVClass* what = nullptr;
-    } object;
-    libav::silence();
-    av_log(&object, AV_LOG_ERROR, "a message without a sender\n");
-    av_log(nullptr, AV_LOG_ERROR, "another\n");
-    EXPECT_EQ(libav::reason(AVERROR(EIO)), "Input/output error (another)");
 }
 
 TEST_F(Movie, WriterFailsCleanly) {

@@ -87,7 +87,7 @@ TEST_F(PictureReadTest, TurnedUprightAsExifSays) {
     }
 }
 
-// The window's place on its display turns along, and what is turned four times by a quarter is as before.
+// The window's place on its display turns too. Four quarter turns give the picture back.
 TEST_F(PictureReadTest, WindowsTurnWithTheirPixels) {
     Part part;
     part.spec = ImageSpec(4, 2, 1, TypeDesc::UINT8);
@@ -133,7 +133,7 @@ TEST_F(PictureReadTest, OrientationOfFilmFormatsIsCarriedAlone) {
     EXPECT_EQ(part.spec.get_int_attribute("Orientation"), 6);
 }
 
-// PFM holds linear light, whatever the library calls it.
+// PFM holds linear light, although the library calls it otherwise.
 TEST_F(PictureReadTest, FloatsOfPfmAreLinear) {
     const fs::path path = folder / "a.pfm";
     std::ofstream file(path, std::ios::binary);

@@ -111,7 +111,7 @@ TEST(Camera, Orthographic) {
     EXPECT_EQ(c.f_px, 100);
     EXPECT_EQ(c.slope(400, 0), dvec2(2, 1));
     EXPECT_EQ(error_of([&] { CameraPath(spec, 400, 200, 1, 40); }),
-              "--fov: an orthographic camera has no field of view; set camera.width");
+              "`fov`: an orthographic camera has no field of view; set camera.width");
 }
 
 TEST(Camera, LookAtGivesAxes) {

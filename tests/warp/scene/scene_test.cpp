@@ -1,6 +1,6 @@
 // The scene reader: every key, every kind of mistake and its message, --set, seeds, presets.
+// Length: the list of wrong scenes with their messages is long.
 #include "warp/scene/scene.h"
-#include "warp/scene/background.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,12 @@
 #include <glm/geometric.hpp>
 
 #include "noise/base/error.h"
+#include "noise/blobs/blobs_spec.h"
+#include "noise/medium/optics.h"
+#include "noise/profile/profile_spec.h"
+#include "noise/surface/surface_spec.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
+#include "warp/scene/background.h"
 
 namespace eikonal {
 namespace {
@@ -34,7 +40,7 @@ std::string parse_error(const std::string& text, const std::vector<std::string>&
 
 template <class T>
 const T& medium(const Scene& scene, std::size_t i = 0) {
-    return std::get<T>(scene.media.at(i));
+    return *scene.media.at(i).get_if<T>();
 }
 
 const std::string kTurbulence = "[[medium]]\ntype = \"turbulence\"\n";
@@ -364,7 +370,7 @@ TEST(SceneErrors, DeepKeysAndValues) {
     std::string blobs = "[[medium]]\ntype = \"blobs\"\nblob = [";
     for (int i = 0; i < 5000; ++i) blobs += "{center = [0.5, -1.25, 1.0], sigma = 0.1},\n";
     EXPECT_EQ(parse_error(blobs + "]"), "no error");
-    EXPECT_EQ(error_of([&] { parse("", {deep.substr(1) + "=1"}); }).substr(0, 9), "--set a.a");
+    EXPECT_EQ(error_of([&] { parse("", {deep.substr(1) + "=1"}); }).substr(0, 9), "`set` a.a");
     EXPECT_NE(error_of([&] { parse("", {"camera={" + deep.substr(1) + "=1}"}); }), "no error");
 }
 
@@ -397,24 +403,24 @@ TEST(SceneSet, ChangesAddsAndRemoves) {
 TEST(SceneSet, ErrorsNameTheOption) {
     const std::string text = kTurbulence;
     EXPECT_EQ(parse_error(text, {"medium.0.cn3=1"}),
-              "--set medium.0.cn3=1: medium.0 of type \"turbulence\" has no key 'cn3'; did you mean 'cn2'?");
+              "`set` medium.0.cn3=1: medium.0 of type \"turbulence\" has no key 'cn3'; did you mean 'cn2'?");
     EXPECT_EQ(parse_error(text, {"medium.0.cn2=-1"}),
-              "--set medium.0.cn2=-1: medium.0.cn2: value -1, must be >= 0 (Cn² [m^-2/3])");
+              "`set` medium.0.cn2=-1: medium.0.cn2: value -1, must be >= 0 (Cn² [m^-2/3])");
     EXPECT_EQ(parse_error(text, {"medium.0.cn2=1e-13x"}),
-              "--set medium.0.cn2=1e-13x: medium.0.cn2: value '1e-13x', must be a number (Cn² [m^-2/3])");
+              "`set` medium.0.cn2=1e-13x: medium.0.cn2: value '1e-13x', must be a number (Cn² [m^-2/3])");
     EXPECT_EQ(parse_error(text, {"medium.3.cn2=1"}),
-              "--set medium.3.cn2=1: '3' is no element of medium, which has 1; the next is 1");
+              "`set` medium.3.cn2=1: '3' is no element of medium, which has 1; the next is 1");
     EXPECT_EQ(parse_error(text, {"medium.first.cn2=1"}),
-              "--set medium.first.cn2=1: 'first' is no element of medium, which has 1; the next is 1");
+              "`set` medium.first.cn2=1: 'first' is no element of medium, which has 1; the next is 1");
     EXPECT_EQ(parse_error(text, {"medium.0.type.x=1"}),
-              "--set medium.0.type.x=1: medium.0.type is no table and has no 'x'");
-    EXPECT_EQ(parse_error(text, {"cn2"}), "--set cn2: must be KEY=VALUE, such as medium.0.cn2=1e-13");
-    EXPECT_EQ(parse_error(text, {"=3"}), "--set =3: a part of the key is empty");
-    EXPECT_EQ(parse_error(text, {"a..b=3"}), "--set a..b=3: a part of the key is empty");
-    EXPECT_EQ(parse_error("", {"medium.0.cn2=1"}).substr(0, 49), "--set medium.0.cn2=1: medium.0: type is missing; ");
+              "`set` medium.0.type.x=1: medium.0.type is no table and has no 'x'");
+    EXPECT_EQ(parse_error(text, {"cn2"}), "`set` cn2: must be KEY=VALUE, such as medium.0.cn2=1e-13");
+    EXPECT_EQ(parse_error(text, {"=3"}), "`set` =3: a part of the key is empty");
+    EXPECT_EQ(parse_error(text, {"a..b=3"}), "`set` a..b=3: a part of the key is empty");
+    EXPECT_EQ(parse_error("", {"medium.0.cn2=1"}).substr(0, 49), "`set` medium.0.cn2=1: medium.0: type is missing; ");
     EXPECT_EQ(parse_error(text, {"camera.up=1\n[time]\nfps=3"}).find('\n'), std::string::npos);
     EXPECT_EQ(parse_error(text, {"medium.0.outer_scale=0.001"}),
-              "--set medium.0.outer_scale=0.001: medium.0.outer_scale: value 0.001, must be > inner_scale, 0.005");
+              "`set` medium.0.outer_scale=0.001: medium.0.outer_scale: value 0.001, must be > inner_scale, 0.005");
 }
 
 TEST(SceneSeed, EveryMediumAndSeedDiffersDeterministically) {
@@ -449,7 +455,7 @@ TEST(Presets, AreListedFoundAndValid) {
         EXPECT_TRUE(s.plate.distance || s.plate.ground) << preset.name << " must work on a plate without depth";
         EXPECT_TRUE(s.camera.horizontal_fov || s.camera.focal_length) << preset.name;
     }
-    EXPECT_EQ(error_of([] { find_preset("hotroad"); }), "--preset hotroad: no such preset; did you mean 'hot-road'?");
+    EXPECT_EQ(error_of([] { find_preset("hotroad"); }), "`preset` hotroad: no such preset; did you mean 'hot-road'?");
     EXPECT_NE(error_of([] { find_preset("../gentle"); }), "no error");
 }
 

@@ -9,23 +9,24 @@
 namespace eikonal {
 namespace {
 
-constexpr int kTaps = kNodeTaps;
-
-using Weights = std::array<float, kTaps>;
-
 Node splat(float a) {
     return Node{a, a, a, a};
 }
 
-EIKONAL_CLONES void weighted_lines(const Node* in, std::size_t stride, std::size_t n, const Weights& w, Node* out) {
-    for (std::size_t i = 0; i < n; ++i)
-        out[i] = splat(w[0]) * in[i] + splat(w[1]) * in[i + stride] + splat(w[2]) * in[i + 2 * stride] +
-                 splat(w[3]) * in[i + 3 * stride] + splat(w[4]) * in[i + 4 * stride] + splat(w[5]) * in[i + 5 * stride];
+EIKONAL_CLONES void weighted_lines(const Node* in, std::size_t stride, std::size_t n, const LagrangeWeights& w,
+                                   Node* out) {
+    for (std::size_t i = 0; i < n; ++i) out[i] = weighted_sum(w, [&](std::size_t row) { return in[i + row * stride]; });
 }
 
-using Mix = GridRow::Mix;
+/// Interpolates along a line. first: the first of the six nodes.
+template <class Weight>
+[[gnu::always_inline]] inline Node interpolated(const std::array<Weight, kLagrangeNodes>& w, const Node* first) {
+    return weighted_sum(w, [first](std::size_t i) { return first[i]; });
+}
 
-Mix mix_at(const DisplacementGrid& grid, double z) {
+using DepthWeights = GridRow::DepthWeights;
+
+DepthWeights depth_weights_at(const DisplacementGrid& grid, double z) {
     const auto& depths = grid.depths;
     const std::size_t last = depths.size() - 1;
     const double scale = grid.perspective ? 1 / z : 1.0;
@@ -55,17 +56,6 @@ Mix mix_at(const DisplacementGrid& grid, double z) {
 
 }  // namespace
 
-std::array<float, kNodeTaps> lagrange_weights(double f) {
-    Weights w{};
-    for (int i = 0; i < kTaps; ++i) {
-        double v = 1;
-        for (int j = 0; j < kTaps; ++j)
-            if (j != i) v *= (f - (j - kTapsBefore)) / (i - j);
-        w[static_cast<std::size_t>(i)] = static_cast<float>(v);
-    }
-    return w;
-}
-
 int node_spacing(double cell_px) {
     const double widest = std::min(kCellsPerNode * cell_px, static_cast<double>(kWidestSpacing));
     int spacing = 1;
@@ -79,18 +69,16 @@ void DisplacementGrid::scale(float gain) {
 }
 
 void DisplacementGrid::cover(const PixelWindow& pixels) {
-    const int taps = spacing > 1 ? kTaps : 1;
-    column0 = floor_div(pixels.x0, spacing) - before();
-    row0 = floor_div(pixels.y0, spacing) - before();
-    columns = floor_div(pixels.x0 + pixels.width - 1, spacing) - before() + taps - column0;
-    rows = floor_div(pixels.y0 + pixels.height - 1, spacing) - before() + taps - row0;
-    weights.resize(static_cast<std::size_t>(spacing));
-    for (int p = 0; p < spacing; ++p)
-        weights[static_cast<std::size_t>(p)] = lagrange_weights(static_cast<double>(p) / spacing);
+    const int taps = spacing > 1 ? kLagrangeNodes : 1;
+    column0 = floor_div(pixels.x0, spacing) - nodes_before();
+    row0 = floor_div(pixels.y0, spacing) - nodes_before();
+    columns = floor_div(pixels.x0 + pixels.width - 1, spacing) - nodes_before() + taps - column0;
+    rows = floor_div(pixels.y0 + pixels.height - 1, spacing) - nodes_before() + taps - row0;
+    weights = lagrange_phases(spacing);
     pair_weights.clear();
     for (std::size_t p = 0; spacing % 2 == 0 && p < weights.size(); p += 2) {
         auto& pair = pair_weights.emplace_back();
-        for (std::size_t tap = 0; tap < kTaps; ++tap)
+        for (std::size_t tap = 0; tap < kLagrangeNodes; ++tap)
             pair[tap] = Node{weights[p][tap], weights[p][tap], weights[p + 1][tap], weights[p + 1][tap]};
     }
     nodes.assign(static_cast<std::size_t>(rows) * depths.size() * static_cast<std::size_t>(columns), Node{});
@@ -123,11 +111,33 @@ float DisplacementGrid::largest_shift() const {
     return largest;
 }
 
+GridPlace DisplacementGrid::place(double x, double y) const {
+    GridPlace place;
+    const double gx = x / spacing, gy = y / spacing;
+    const int cx = static_cast<int>(std::floor(gx)), cy = static_cast<int>(std::floor(gy));
+    for (int i = 0; i < kLagrangeNodes; ++i) {
+        const int column = std::clamp(cx + i - kNodesBefore - column0, 0, columns - 1);
+        const int row = std::clamp(cy + i - kNodesBefore - row0, 0, rows - 1);
+        place.columns[static_cast<std::size_t>(i)] = static_cast<std::size_t>(column);
+        place.rows[static_cast<std::size_t>(i)] = static_cast<std::size_t>(row);
+    }
+    place.column_weights = tabulated_lagrange_weights(gx - cx);
+    place.row_weights = tabulated_lagrange_weights(gy - cy);
+    return place;
+}
+
+Node DisplacementGrid::at(const GridPlace& place, std::size_t depth) const {
+    return weighted_sum(place.row_weights, [&](std::size_t j) {
+        const Node* line = nodes.data() + index(static_cast<int>(place.rows[j]), depth);
+        return weighted_sum(place.column_weights, [&](std::size_t i) { return line[place.columns[i]]; });
+    });
+}
+
 void GridRow::start(const DisplacementGrid& grid, int y) {
     grid_ = &grid;
     const int base = floor_div(y, grid.spacing);
     const int phase = y - base * grid.spacing;
-    const int grid_row = base - grid.before() - grid.row0;
+    const int grid_row = base - grid.nodes_before() - grid.row0;
     const std::size_t line = grid.depths.size() * static_cast<std::size_t>(grid.columns);
     if (phase == 0) {
         source_ = grid.nodes.data() + grid.index(base - grid.row0, 0);
@@ -137,17 +147,17 @@ void GridRow::start(const DisplacementGrid& grid, int y) {
                        grid.weights[static_cast<std::size_t>(phase)], line_.data());
         source_ = line_.data();
     }
-    recent_[0] = recent_[1] = mix_at(grid, grid.depths[0]);
+    last_used_[0] = last_used_[1] = depth_weights_at(grid, grid.depths[0]);
     cached_.resize(grid.depths.size());
     cached_x_.assign(grid.depths.size(), std::numeric_limits<int>::min());
 }
 
-const Mix& GridRow::mix(double z) {
-    if (recent_[0].z != z) {
-        if (recent_[1].z != z) recent_[1] = mix_at(*grid_, z);
-        std::swap(recent_[0], recent_[1]);
+const DepthWeights& GridRow::depth_weights(double z) {
+    if (last_used_[0].z != z) {
+        if (last_used_[1].z != z) last_used_[1] = depth_weights_at(*grid_, z);
+        std::swap(last_used_[0], last_used_[1]);
     }
-    return recent_[0];
+    return last_used_[0];
 }
 
 Node GridRow::node(std::size_t depth, int x) {
@@ -156,17 +166,15 @@ Node GridRow::node(std::size_t depth, int x) {
     if (cached_x_[depth] == x) return cached_[depth];
     const int base = floor_div(x, grid_->spacing);
     const int phase = x - base * grid_->spacing;
-    const Node* p = line + base - kTapsBefore;
-    const Weights& w = grid_->weights[static_cast<std::size_t>(phase)];
-    const Node v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] +
-                   splat(w[4]) * p[4] + splat(w[5]) * p[5];
+    const Node* p = line + base - kNodesBefore;
+    const Node v = interpolated(grid_->weights[static_cast<std::size_t>(phase)], p);
     cached_[depth] = v;
     cached_x_[depth] = x;
     return v;
 }
 
 Shift GridRow::at(int x, double z) {
-    const Mix& m = mix(z);
+    const DepthWeights& m = depth_weights(z);
     const Node a = node(m.lower, x);
     Shift d{m.x_lower * a[0] + m.s_lower * a[2], m.x_lower * a[1] + m.s_lower * a[3]};
     if (m.upper != m.lower) {
@@ -179,7 +187,7 @@ Shift GridRow::at(int x, double z) {
 
 namespace {
 
-EIKONAL_CLONES void mix_line(const Node* lower, const Node* upper, const Mix& m, int n, Node* out) {
+EIKONAL_CLONES void mix_line(const Node* lower, const Node* upper, const DepthWeights& m, int n, Node* out) {
     const Node wl{m.x_lower, m.x_lower, m.s_lower, m.s_lower}, wu{m.x_upper, m.x_upper, m.s_upper, m.s_upper};
     for (int i = 0; i < n; ++i) {
         const Node v = wl * lower[i] + wu * upper[i];
@@ -188,7 +196,7 @@ EIKONAL_CLONES void mix_line(const Node* lower, const Node* upper, const Mix& m,
     }
 }
 
-EIKONAL_CLONES void add_mixed(const Node* lower, const Node* upper, const Mix& m, int n, float* uv) {
+EIKONAL_CLONES void add_mixed(const Node* lower, const Node* upper, const DepthWeights& m, int n, float* uv) {
     const Node wl{m.x_lower, m.x_lower, m.s_lower, m.s_lower}, wu{m.x_upper, m.x_upper, m.s_upper, m.s_upper};
     for (int i = 0; i < n; ++i) {
         const Node v = wl * lower[i] + wu * upper[i];
@@ -197,25 +205,23 @@ EIKONAL_CLONES void add_mixed(const Node* lower, const Node* upper, const Mix& m
     }
 }
 
-/// line: (u, v, u, v) a node. Whole cells of an even spacing take two pixels at a time.
-EIKONAL_CLONES void expand_line(const Node* line, int first_phase, int spacing, const Weights* weights,
-                                const std::array<Node, kTaps>* pairs, int n, float* uv) {
+/// Interpolates a line of nodes, each (u, v, u, v), and adds it to n pixels of interleaved (u, v). The first pixel lies
+/// first_phase pixels after the node line[kNodesBefore]. Between two nodes an even spacing takes two pixels at a time.
+EIKONAL_CLONES void expand_line(const Node* line, int first_phase, int spacing, const LagrangeWeights* weights,
+                                const std::array<Node, kLagrangeNodes>* pairs, int n, float* uv) {
     int phase = first_phase;
     const Node* p = line;
     for (int i = 0; i < n;) {
         if (phase == 0 && pairs && i + spacing <= n) {
             for (int k = 0; k < spacing; k += 2) {
-                const auto& w = pairs[k / 2];
-                const Node v = w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3] + w[4] * p[4] + w[5] * p[5];
+                const Node v = interpolated(pairs[k / 2], p);
                 for (int c = 0; c < 4; ++c) uv[2 * (i + k) + c] += v[c];
             }
             i += spacing;
             ++p;
             continue;
         }
-        const Weights& w = weights[phase];
-        const Node v = splat(w[0]) * p[0] + splat(w[1]) * p[1] + splat(w[2]) * p[2] + splat(w[3]) * p[3] +
-                       splat(w[4]) * p[4] + splat(w[5]) * p[5];
+        const Node v = interpolated(weights[phase], p);
         uv[2 * i] += v[0];
         uv[2 * i + 1] += v[1];
         ++i;
@@ -230,10 +236,10 @@ EIKONAL_CLONES void expand_line(const Node* line, int first_phase, int spacing, 
 
 void GridRow::add_constant_depth(int x0, int n, double z, float* uv) const {
     const DisplacementGrid& grid = *grid_;
-    const Mix m = mix_at(grid, z);
+    const DepthWeights m = depth_weights_at(grid, z);
     const auto columns = static_cast<std::size_t>(grid.columns);
     const Node *lower = source_ + m.lower * columns, *upper = source_ + m.upper * columns;
-    const int base = floor_div(x0, grid.spacing), first = base - grid.before() - grid.column0;
+    const int base = floor_div(x0, grid.spacing), first = base - grid.nodes_before() - grid.column0;
     if (grid.spacing == 1) {
         add_mixed(lower + first, upper + first, m, n, uv);
         return;
@@ -242,6 +248,37 @@ void GridRow::add_constant_depth(int x0, int n, double z, float* uv) const {
     mix_line(lower, upper, m, grid.columns, line.data());
     expand_line(line.data() + first, x0 - base * grid.spacing, grid.spacing, grid.weights.data(),
                 grid.pair_weights.empty() ? nullptr : grid.pair_weights.data(), n, uv);
+}
+
+void GridRows::start(const std::vector<DisplacementGrid>& grids, int y, std::span<RowBender* const> benders) {
+    rows_.resize(grids.size());
+    for (std::size_t i = 0; i < grids.size(); ++i) rows_[i].start(grids[i], y);
+    benders_ = benders;
+    may_contain_grids_ = false;
+    for (RowBender* bender : benders_) {
+        bender->start_row(y);
+        may_contain_grids_ = may_contain_grids_ || bender->row_may_contain_grids();
+    }
+}
+
+bool GridRows::bender_contains_grids(int x) {
+    return std::any_of(benders_.begin(), benders_.end(), [x](RowBender* bender) { return bender->contains_grids(x); });
+}
+
+void GridRows::add_constant_depth(int x0, int n, double z, float* uv) {
+    const auto add_each = [&](const auto& at) {
+        for (int i = 0; i < n; ++i) {
+            const Shift d = at(x0 + i);
+            uv[2 * i] += d.x;
+            uv[2 * i + 1] += d.y;
+        }
+    };
+    if (may_contain_grids_) {
+        add_each([&](int x) { return at(x, z); });
+        return;
+    }
+    for (GridRow& row : rows_) row.add_constant_depth(x0, n, z, uv);
+    for (RowBender* bender : benders_) add_each([&](int x) { return bender->at(x, z); });
 }
 
 }  // namespace eikonal

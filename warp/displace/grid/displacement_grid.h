@@ -1,19 +1,20 @@
-/// Displacement of a band of image rows as a function of screen position *and* depth: what every model computes and
-/// every way of meeting the depth buffer reads.
+/// Displacement as a function of pixel *and* depth: what every model computes, and what every way of meeting the depth
+/// buffer reads.
 ///
-/// A model bends rays on a grid of nodes, `spacing` pixels apart, anchored at the display window's pixel (0, 0), and
-/// records along each ray at axial depths z_0 < z_1 < … (PHYSICS.md#first-order)
-///     X(z) = f_px · x1⊥(z)  [px·m]   and its slope  S(z) = dX/dz  [px],
-/// so that the displacement of an object at axial depth z is d = X(z)/z (perspective) or d = X(z) (orthographic, where
-/// f_px is pixels per metre and X in px). In image axes: x right, y down.
+/// A model bends rays on a grid of nodes. The nodes are `spacing` pixels apart, and node (0, 0) is the display window's
+/// pixel (0, 0). Along each node's ray the model records, at axial depths z_0 < z_1 < … (PHYSICS.md#first-order),
+///     X(z) = f_px · x1⊥(z)  [px·m]   and its slope  S(z) = dX/dz  [px].
+/// The displacement of an object at axial depth z is d = X(z)/z in a perspective view. In an orthographic view it is
+/// d = X(z), where f_px is in pixels per metre and X in px. Image axes: x to the right, y downwards.
 ///
-/// Between depths X is the cubic Hermite interpolant of (X, S), exact for screens, or linear where the model says so
-/// (tables: the paper's suggestion). Between grid nodes it is a six-point Lagrange interpolant, exact for fifth-order
-/// polynomials; at a spacing of 1 there is nothing to interpolate.
+/// Between depths, X is the cubic Hermite interpolant of (X, S), which is exact for screens. Models that work with
+/// tables choose linear interpolation, as the paper suggests. Beyond the last depth X continues along its last slope.
+/// Before the first depth X rises from X(0) = 0: as z², as it does within an eddy, or as z where interpolation is
+/// linear.
 ///
-/// Beyond the last depth X continues along its last slope; before the first it rises from X(0) = 0 as z², as it does
-/// within an eddy, or evenly where interpolation is linear. Finite
-/// for every z > 0 that a float can hold, as long as the nodes are.
+/// Between nodes, X and S are six-point Lagrange interpolants (lagrange.h). At a spacing of 1 none are needed.
+///
+/// If the nodes are finite, displacements are finite for every z > 0 that a float can hold.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +23,9 @@
 #include <span>
 #include <vector>
 
+#include "warp/displace/grid/lagrange.h"
+#include "warp/displace/grid/row_bender.h"
 #include "warp/displace/grid/shift.h"
-#include "warp/displace/media/surface/mirage_row.h"
 #include "warp/pixels/linear_image.h"
 
 namespace eikonal {
@@ -35,152 +37,131 @@ constexpr int floor_div(int a, int b) {
 
 enum class DepthInterpolation { Linear, Hermite };
 
-/// Widest spacing of nodes in pixels, and the largest part of a field's cell that they may span.
+/// Widest spacing of nodes [px].
 inline constexpr int kWidestSpacing = 8;
+/// Largest spacing of nodes, as a part of the finest cell of a field.
 inline constexpr double kCellsPerNode = 0.55;
-/// Rms error of interpolation between nodes that leaves, relative to the rms of the map: 0.6 % for screens that resolve
-/// l0 with three cells, and most where a pixel limits them, whose field is not smooth at its own cell.
-/// (tests/displacement_test.cpp)
+/// Rms error of the interpolation between nodes at that spacing, relative to the rms of the map. It is largest where a
+/// pixel limits the cells of screens, whose field is not smooth at its own cell. Screens that resolve l0 with three
+/// cells have an error of 0.6 %. (tests/warp/displace/displacement_test.cpp)
 inline constexpr double kSpacingError = 0.011;
-/// Largest power of two that keeps to both, for a field whose finest cell is `cell_px` pixels wide on the screen.
+/// Largest power of two that keeps both limits, for a field whose finest cell is `cell_px` pixels wide on the screen.
 int node_spacing(double cell_px);
 
-/// Nodes i - kTapsBefore … of the interpolant around position i + f, 0 <= f < 1, and their weights: six-point Lagrange.
-inline constexpr int kTapsBefore = 2, kNodeTaps = 6;
-std::array<float, kNodeTaps> lagrange_weights(double f);
-
-/// X.x, X.y, S.x, S.y of one node at one depth; a SIMD register.
+/// X.x, X.y, S.x, S.y of one node at one depth, in one SIMD register.
 using Node = float __attribute__((vector_size(16)));
 
-/// Nodes for a grid of rows. Layout [grid row][depth][grid column].
+/// A place in the picture between the nodes of a grid, for DisplacementGrid::at().
+struct GridPlace {
+    std::array<std::size_t, kLagrangeNodes> columns{}, rows{};  ///< of the grid's nodes around it
+    LagrangeWeights column_weights{}, row_weights{};
+};
+
+/// The nodes of a window of pixels. Layout [grid row][depth][grid column].
 struct DisplacementGrid {
-    int spacing = 1;  ///< pixels between nodes, >= 1
-    int column0 = 0,
-        row0 = 0;  ///< first node, in units of `spacing`: node (i, j) is the centre of pixel (i, j)·spacing
+    int spacing = 1;            ///< pixels between nodes, >= 1
+    int column0 = 0, row0 = 0;  ///< first node: node (i, j) is the centre of pixel (i · spacing, j · spacing)
     int columns = 0, rows = 0;
     bool perspective = true;
     DepthInterpolation interpolation = DepthInterpolation::Linear;
-    std::vector<double> depths;  ///< axial depth of each layer [m], ascending, > 0
+    std::vector<double> depths;  ///< axial depths [m], ascending, > 0
     std::vector<Node> nodes;
-    std::vector<std::array<float, 6>> weights;      ///< of the interpolant, for each phase 0 … spacing - 1
-    std::vector<std::array<Node, 6>> pair_weights;  ///< the same of two phases at a time; none if the spacing is odd
+    std::vector<LagrangeWeights> weights;                        ///< at each pixel between two nodes: `spacing` of them
+    std::vector<std::array<Node, kLagrangeNodes>> pair_weights;  ///< of two pixels at a time; none if spacing is odd
 
-    /// Sets the grid that interpolation needs for these (absolute) pixels, and zeroes the nodes. depths must be set.
+    /// Makes room for the nodes that these (absolute) pixels need, and sets all nodes to zero. `depths` must be set.
     void cover(const PixelWindow& pixels);
-    /// Nodes that interpolation takes before the one at or before a pixel.
-    int before() const { return spacing > 1 ? kTapsBefore : 0; }
+    /// Number of nodes that a pixel needs before the last node at or before the pixel.
+    int nodes_before() const { return spacing > 1 ? kNodesBefore : 0; }
     std::size_t index(int grid_row, std::size_t depth, int column = 0) const {
         return (static_cast<std::size_t>(grid_row) * depths.size() + depth) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(column);
     }
     Node* row(int grid_row, std::size_t depth) { return nodes.data() + index(grid_row, depth); }
-    /// Multiplies the displacement.
+    /// Multiplies the displacement by a gain.
     void scale(float gain);
-    /// Largest component of d over the grid's nodes and layers, and in the limit far beyond them [px].
+    /// Largest component of d over nodes, depths, and all that lies beyond the last depth [px].
     float largest_shift() const;
+
+    /// The place of pixel position (x, y), which need not be whole and counts pixel centres: pixel i's centre is at i.
+    /// Outside of the grid the nodes of its border continue.
+    GridPlace place(double x, double y) const;
+    /// X and S at a place, at depths[depth].
+    Node at(const GridPlace& place, std::size_t depth) const;
 };
 
-/// One image row of a grid, ready for look-ups at any column and depth.
+/// One pixel row of a grid, ready to be looked up at any column and depth.
 class GridRow {
   public:
-    /// y: absolute pixel row inside the window that `grid` covers; the grid must outlive this.
+    /// y: absolute pixel row of the window that `grid` covers. The grid must outlive this.
     void start(const DisplacementGrid& grid, int y);
 
     /// Displacement of pixel column x (absolute) for an object at axial depth z > 0.
     Shift at(int x, double z);
-    /// The same for every column of [x0, x0 + n) at one depth, added into interleaved (u, v). The fast path.
+    /// Adds the displacements of the columns [x0, x0 + n), all at one depth, to interleaved (u, v). This is the fast
+    /// path: it agrees with at() but for rounding.
     void add_constant_depth(int x0, int n, double z, float* uv) const;
 
-    /// The two layers around a depth z, and the weights of their (X, S) in d.
-    struct Mix {
+    /// The two depths of the grid around a depth z, and the weights that their X and S have in d.
+    struct DepthWeights {
         double z;
         std::size_t lower, upper;
         float x_lower, s_lower, x_upper, s_upper;
     };
 
   private:
-    const Mix& mix(double z);
+    const DepthWeights& depth_weights(double z);
     Node node(std::size_t depth, int x);
 
     const DisplacementGrid* grid_ = nullptr;
-    std::array<Mix, 2> recent_;  ///< depths repeat along a row
-    std::vector<Node> line_;     ///< the row interpolated vertically: [depth][column]
-    const Node* source_ = nullptr;
-    std::vector<Node> cached_;
-    std::vector<int> cached_x_;
+    std::array<DepthWeights, 2> last_used_;  ///< depths repeat along a row
+    std::vector<Node> line_;                 ///< the row, interpolated vertically: [depth][column]
+    const Node* source_ = nullptr;           ///< line_, or the grid's own row of nodes
+    std::vector<Node> cached_;               ///< last node() of each depth
+    std::vector<int> cached_x_;              ///< its pixel column
 };
 
-/// The rows of several grids (one a medium, each with depths of its own) and mirages whose displacements add up.
+/// One pixel row of all that bends rays. The displacements of the grids (each with depths of its own) and of the
+/// benders add up.
 class GridRows {
   public:
-    /// y: absolute pixel row that the grids cover. grids, mirages and air must outlive this. gain multiplies the
-    /// mirages' displacement; the grids' nodes have theirs. air: what the grids do to the rays of one of the mirages;
-    /// without it they and the mirages add up.
-    void start(const std::vector<DisplacementGrid>& grids, int y, std::span<const Mirage> mirages = {}, double gain = 1,
-               const MirageAir* air = nullptr) {
-        rows_.resize(grids.size());
-        for (std::size_t i = 0; i < grids.size(); ++i) rows_[i].start(grids[i], y);
-        mirages_.resize(mirages.size());
-        has_air_ = false;
-        end_ = 0;
-        for (std::size_t i = 0; i < mirages.size(); ++i) {
-            const bool bent = air != nullptr && air->belongs_to(mirages[i]) && air->touches(y);
-            has_air_ = has_air_ || bent;
-            mirages_[i].start(mirages[i], y, gain, bent ? air : nullptr);
-        }
-    }
+    /// Goes to pixel row y (absolute), which the grids cover. Grids and benders must outlive this.
+    void start(const std::vector<DisplacementGrid>& grids, int y, std::span<RowBender* const> benders = {});
+
+    /// Displacement of pixel column x (absolute) for an object at axial depth z > 0.
     Shift at(int x, double z) {
         Shift sum;
         const auto add = [&sum](Shift d) {
             sum.x += d.x;
             sum.y += d.y;
         };
-        if (!carried(x))
+        if (!(may_contain_grids_ && bender_contains_grids(x)))
             for (GridRow& row : rows_) add(row.at(x, z));
-        for (MirageRow& row : mirages_) add(row.at(x, z));
+        for (RowBender* bender : benders_) add(bender->at(x, z));
         return sum;
     }
-    void add_constant_depth(int x0, int n, double z, float* uv) {
-        if (has_air_) {
-            for (int i = 0; i < n; ++i) {
-                const Shift d = at(x0 + i, z);
-                uv[2 * i] += d.x;
-                uv[2 * i + 1] += d.y;
-            }
-            return;
-        }
-        for (GridRow& row : rows_) row.add_constant_depth(x0, n, z, uv);
-        for (MirageRow& row : mirages_) row.add_constant_depth(x0, n, z, uv);
-    }
+    /// Adds the displacements of the columns [x0, x0 + n), all at one depth, to interleaved (u, v).
+    void add_constant_depth(int x0, int n, double z, float* uv);
 
-    /// Whether a mirage moves pixel x; and the axial depth where its ray ends on a surface [m], infinite if on none.
-    bool mirage_moves(int x) {
+    /// Whether a bender moves pixel x.
+    bool bender_moves(int x) {
         bool moves = false;
-        for (MirageRow& row : mirages_) moves = row.moves(x) || moves;
+        for (RowBender* bender : benders_) moves = bender->moves(x) || moves;
         return moves;
     }
-    double end(int x) {
-        if (end_ > 0) return end_;
+    /// Axial depth where the ray of pixel x ends on a surface [m]; infinite if it ends on none.
+    double ray_end(int x) {
         double end = std::numeric_limits<double>::infinity();
-        for (MirageRow& row : mirages_) end = std::min(end, row.end(x));
+        for (RowBender* bender : benders_) end = std::min(end, bender->ray_end(x));
         return end;
     }
 
-    /// Says end() from now on: of one pixel whose ray is better known.
-    void end_at(double z) { end_ = z; }
-
   private:
-    bool carried(int x) {
-        if (has_air_)
-            for (MirageRow& row : mirages_)
-                if (row.carries_air(x)) return true;
-        return false;
-    }
+    bool bender_contains_grids(int x);
 
     std::vector<GridRow> rows_;
-    std::vector<MirageRow> mirages_;
-    bool has_air_ = false;
-    double end_ = 0;  ///< if > 0: what end() says
+    std::span<RowBender* const> benders_;
+    bool may_contain_grids_ = false;  ///< any of the benders, in this row
 };
 
 }  // namespace eikonal

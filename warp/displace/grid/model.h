@@ -1,9 +1,11 @@
 /// The models of displacement, what a shot settles for all of them, and what counts as too little to see.
+/// Theory: PHYSICS.md#focusing.
 #pragma once
 
 #include <array>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string_view>
 #include <utility>
 
@@ -54,8 +56,8 @@ struct DisplacerSettings {
     std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
     /// Media that move no pixel by more than this before any gain are left out [px] >= 0.
     double negligible = kNegligibleShift;
-    bool sample_errors = false;     ///< stated_error() will be asked for
-    bool (*cancelled)() = nullptr;  ///< asked now and then; true ends the frame with a FrameError
+    bool sample_errors = false;  ///< stated_error() will be asked for
+    std::stop_token stop;        ///< once requested, work ends with a FrameError
 };
 
 /// Whether a depth lies beyond `far`, rounding to float aside.
@@ -63,9 +65,9 @@ inline bool is_beyond(double depth, double far) {
     return depth > far * (1 + 1e-6);
 }
 
-/// FrameError if a run has been cancelled. Cheap beside a ray.
-inline void check_cancelled(bool (*cancelled)()) {
-    if (cancelled != nullptr && cancelled()) throw FrameError("interrupted");
+/// FrameError if a stop has been requested. Cheap beside a ray.
+inline void check_stop(const std::stop_token& stop) {
+    if (stop.stop_requested()) throw FrameError(kStopped);
 }
 
 }  // namespace eikonal

@@ -5,6 +5,7 @@
 /// A bend x1 [m] at depth z moves the image by X/z (perspective) or X (orthographic), to first order in x1, with
 ///     X = f_px (x1·right - s_x x1·forward,  -(x1·up - s_y x1·forward) · pixel aspect),   s = slope of p
 /// (orthographic: without the s terms): what a bend has along the ray itself never shows.
+/// Theory: PHYSICS.md#slanted-rays.
 #pragma once
 
 #include <glm/geometric.hpp>

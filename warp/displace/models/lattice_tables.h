@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "noise/turbulence/lattice/path_tables.h"
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "warp/displace/grid/displacement_grid.h"
 #include "warp/displace/grid/ray_frame.h"
 

@@ -172,7 +172,7 @@ void BentRays::fill(DisplacementGrid& grid, const Camera& camera) const {
     const std::vector<dvec2> disc = aperture_points(aperture, cell);
     for (int r = 0; r < grid.rows; ++r)
         for (int c = 0; c < grid.columns; ++c) {
-            check_cancelled(cancelled);
+            check_stop(stop);
             const StraightRay ray =
                 straight_ray(camera, (grid.column0 + c) * grid.spacing + 0.5, (grid.row0 + r) * grid.spacing + 0.5);
             bool without_index = false;
@@ -180,13 +180,13 @@ void BentRays::fill(DisplacementGrid& grid, const Camera& camera) const {
             if (without_index)
                 throw FrameError(
                     "second-order: rays come to where the index of refraction is not positive; lower "
-                    "optics.exaggeration or --gain");
+                    "optics.exaggeration or `gain`");
             for (std::size_t k = 0; k < nodes.size(); ++k) grid.row(r, k)[c] += nodes[k];
         }
 }
 
 BentPixel bent_pixel(const BentRays& model, const Camera& camera, int x, int y, double farthest) {
-    check_cancelled(model.cancelled);
+    check_stop(model.stop);
     DisplacementGrid grid = model.grid(camera);
     grid.spacing = 1;
     grid.depths.clear();

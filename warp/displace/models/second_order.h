@@ -13,7 +13,10 @@
 /// A ray that has turned by more than kSteepestBend goes on straight from there, and one that has turned back is not
 /// moved: that far no warp holds. It is lost to those whom it should judge. Where rays come to no index (n <= 0) there
 /// is no map.
+/// Theory: PHYSICS.md#second-order.
 #pragma once
+
+#include <stop_token>
 
 #include "noise/air/air.h"
 #include "warp/displace/grid/displacement_grid.h"
@@ -40,22 +43,23 @@ inline constexpr double kRayBlobReach = 4;
 inline constexpr double kJudgedBlobReach = 3.5;
 /// Rms error of a lattice's force that its spline is made finer for, relative to the rms, where memory permits.
 inline constexpr double kSecondOrderSplineError = 0.003;
-/// Rms error of shifts with kStep against kFineStep, relative to the rms shift. (tests/second_order_test.cpp)
+/// Rms error of shifts with kStep against kFineStep, relative to the rms shift.
+/// (tests/warp/displace/second_order_test.cpp)
 inline constexpr double kSecondOrderError = 2e-3;
 
 struct BentRays {
-    AirInstant field;               ///< gain included
-    double step;                    ///< in longest steps of the field
-    int spacing;                    ///< of nodes [px]
-    std::vector<double> depths;     ///< of a grid's layers [m]
-    double aperture = 0;            ///< diameter [m]; 0: a point
-    double cell = 1;                ///< finest of the media that it averages over [m]
-    double focus = 1;               ///< axial depth on which a perspective aperture's rays converge [m]
-    bool (*cancelled)() = nullptr;  ///< as DisplacerSettings
+    AirInstant field;            ///< gain included
+    double step;                 ///< in longest steps of the field
+    int spacing;                 ///< of nodes [px]
+    std::vector<double> depths;  ///< of a grid's layers [m]
+    double aperture = 0;         ///< diameter [m]; 0: a point
+    double cell = 1;             ///< finest of the media that it averages over [m]
+    double focus = 1;            ///< axial depth on which a perspective aperture's rays converge [m]
+    std::stop_token stop = {};   ///< as DisplacerSettings
 
     /// A grid without nodes, to be covered and filled.
     DisplacementGrid grid(const Camera& camera) const;
-    /// Adds X and S at every node and depth. FrameError once cancelled, and where a ray comes to n <= 0.
+    /// Adds X and S at every node and depth. FrameError once a stop is requested, and where a ray comes to n <= 0.
     void fill(DisplacementGrid& grid, const Camera& camera) const;
 };
 

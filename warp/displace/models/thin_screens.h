@@ -23,6 +23,7 @@
 #include <optional>
 #include <vector>
 
+#include "noise/turbulence/parameters/turbulence_spec.h"
 #include "noise/turbulence/screens/screens.h"
 #include "warp/displace/grid/displacement_grid.h"
 #include "warp/displace/grid/ray_frame.h"

@@ -1,8 +1,10 @@
-/// Blobs filled into the nodes of a grid (grid.h), inside their discs only: what blob_bends.h groups and interpolates.
+/// Fills the nodes of a displacement grid with blobs, inside their discs only (seen_blobs.h groups and interpolates
+/// them).
 ///
-/// A layer of depth within a blob gets its closed form at that depth. From the first layer behind it on the blob's X is
-/// straight in z: that layer alone gets it, and one pass over the grid takes all of it on to the layers beyond. Cost is
-/// nodes covered × layers within the blob. Single precision, but for what cancels; same bits on every processor.
+/// At a depth within a blob, nodes get its closed form at that depth. Behind a blob X is a straight line in z, so the
+/// first depth behind it gets the blob, and one pass over the grid carries all blobs on to the depths beyond. The cost
+/// is the nodes covered times the depths within the blob. Single precision, except for differences that would lose
+/// digits. The bits are the same on every processor.
 #pragma once
 
 #include <vector>

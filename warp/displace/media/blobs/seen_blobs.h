@@ -1,21 +1,20 @@
-/// Hot blobs in the warp: the closed-form first-order perturbation (noise/blobs/blob_profile.h) as screen-space
-/// displacement.
+/// Hot blobs in the warp: the closed-form first-order perturbation (noise/blobs/blob_profile.h) as displacement.
 ///
-///     X(z) = -2 n_j f_px e^{-|b|²/σ²} i1(a, c) b⊥,   a = -w_j/σ,  c = (L z - w_j)/σ        (PHYSICS.md#blobs,
-///     *corrected*)
+///     X(z) = -2 n_j f_px e^{-|b|²/σ²} i1(a, c) b⊥,   a = -w_j/σ,  c = (L z - w_j)/σ     PHYSICS.md#blobs, *corrected*
 ///
-/// summed over blobs; b leads from the blob to the pixel's ray, w_j is where they are closest. b⊥ in pixels is exact in
-/// perspective: with the blob at (r, u, f) in camera axes and the ray's slope s, b⊥ = (s_x f - r, s_y f - u).
+/// summed over blobs. b leads from the blob to the pixel's ray, and w_j is where the two are closest. b⊥ in pixels is
+/// exact in perspective: with the blob at (r, u, f) in camera axes and the ray's slope s, b⊥ = (s_x f - r, s_y f - u).
+/// PHYSICS.md#slanted-rays
 ///
-/// Cost follows the area that blobs cover. Each is worked out on the nodes of a grid (grid.h) inside its disc only, the
-/// nodes no farther apart than kNodeSpacing σ, so that a large blob costs no more than a small one. Blobs are
-/// grouped by node spacing, one grid a group and tile; tiles without blobs have none. Between layers of depth, at most
-/// kLayerSpacing σ apart where blobs are (farther where kMostBlobLayers must do), X is a cubic; behind a blob it is
-/// straight, hence exact.
+/// Cost. It follows the area that blobs cover. Each blob is worked out inside its disc only, on nodes that are at most
+/// kNodeSpacing σ apart, so that a large blob costs no more than a small one. Blobs are grouped by node spacing: one
+/// grid for each group and tile, and none for tiles without blobs. Depths are at most kLayerSpacing σ apart where blobs
+/// are, or farther where there would be more than kMostBlobLayers of them. Between depths X is a cubic. Behind a blob X
+/// is a straight line in z, which the cubic represents exactly.
 ///
-/// What is left out: discs end where a blob moves a pixel by less than kNegligibleShift/N, N blobs, so that all that is
-/// dropped sums up to less than kNegligibleShift, at any pixel and depth; a blob weaker than that everywhere is
-/// skipped.
+/// What is left out. A disc ends where its blob moves a pixel by less than kNegligibleShift/N, for N blobs. All that is
+/// dropped therefore sums up to less than kNegligibleShift at any pixel and depth. A blob that is weaker than that
+/// everywhere is skipped.
 #pragma once
 
 #include <vector>
@@ -28,7 +27,7 @@
 namespace eikonal {
 
 /// Bound of the error of interpolation between nodes, relative to the blob's largest displacement.
-/// (tests/blob_bends_test.cpp)
+/// (tests/warp/displace/seen_blobs_test.cpp)
 inline constexpr double kBlobNodeError = 1e-3;
 inline constexpr double kNodeSpacing = 0.35, kLayerSpacing = 0.5;
 /// Bound of the error between layers, relative likewise, where kMostBlobLayers suffice.

@@ -8,26 +8,30 @@
 
 #include "noise/base/error.h"
 #include "noise/math/portable_math.h"
+#include "noise/medium/optics.h"
 #include "noise/surface/surface.h"
+#include "noise/surface/surface_spec.h"
 
 namespace eikonal {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The scan over w: from the least sine to 1 on either side, so many a decade; what lies between nodes is within
-/// kScanError of them.
+/// The scan of δ/σ over w has nodes at 0 and from kLeastSine to 1 on either side, so many a decade. Between nodes the
+/// value is at most kScanError times that of the larger of them.
 constexpr double kLeastSine = 1e-8;
 constexpr int kDecades = 8, kPerDecade = 40;
 constexpr double kScanError = 1.15;
-/// Rays that advance less than this along the view for a metre of way are not bent: they do not graze the plane.
+/// Rays that advance less than this along the view by metre of way do not graze the plane. They are not bent.
 constexpr double kLeastAdvance = 1e-3;
 
 }  // namespace
 
-/// A pixel's straight ray in the plane's terms.
+/// A pixel's straight ray, seen from the plane.
 struct Mirage::Frame {
-    dvec2 slope;
-    double H, w, along, length;
+    dvec2 slope;    ///< of the pixel; 0 in an orthographic view
+    double H, w;    ///< height of its start [m], sine of its elevation
+    double along;   ///< PixelRay::along
+    double length;  ///< way by metre of axial depth
 };
 
 Mirage::Frame Mirage::frame(double px, double py) const {
@@ -61,7 +65,7 @@ Mirage::Mirage(const SurfaceSpec& spec, const IndexLaw& law, double exaggeration
                         "optics.exaggeration or surface_temperature",
                         medium, exaggeration));
     const double scale_x = camera.f_px, scale_y = camera.f_px * camera.pixel_aspect;
-    // slope (or offset) of pixel (x, y)'s centre = that of (0, 0) + x/scale_x right - y/scale_y up
+    // The slope (or offset) of pixel (x, y)'s centre is that of (0, 0) + x/scale_x right - y/scale_y up.
     const dvec2 s0 = camera.slope(0.5, 0.5);
     climb_ = {(perspective_ ? lift_ : H_) + s0.x * right_ + s0.y * up_, right_ / scale_x, -up_ / scale_y};
     half_pixel_ = 0.5 * (std::abs(climb_[1]) + std::abs(climb_[2]));
@@ -79,7 +83,7 @@ Mirage::Mirage(const SurfaceSpec& spec, const IndexLaw& law, double exaggeration
     const double step = portable::exp(portable::log(10) / kPerDecade);
     double sine = kLeastSine;
     for (int i = 0; i < kDecades * kPerDecade; ++i, sine *= step) sines.insert(sines.end(), {-sine, sine});
-    // the jump at the critical angle, from either side
+    // δ jumps at the critical angle: one node on either side.
     const double critical = portable::sin(layer.critical_slope(H_, exaggeration, equation));
     if (critical > 0 && critical < 1) sines.insert(sines.end(), {-critical * (1 - 1e-9), -critical * (1 + 1e-9)});
     std::sort(sines.begin(), sines.end());
@@ -93,7 +97,7 @@ Mirage::Mirage(const SurfaceSpec& spec, const IndexLaw& law, double exaggeration
     high_ = (last == scan_.rbegin() ? *last : *(last - 1))[0];
 }
 
-/// Greatest |direction| of the window's rays.
+/// Greatest Frame::length of the window's rays.
 double Mirage::farthest_stretch(const PixelWindow& window) const {
     double stretch = 1;
     for (const int i : {0, window.width})
@@ -101,14 +105,14 @@ double Mirage::farthest_stretch(const PixelWindow& window) const {
     return stretch;
 }
 
-/// Largest |δ|/σ up to a way: δ is convex or concave in σ, so that it grows until the ray ends.
+/// Largest |δ|/σ up to a way. δ is convex or concave in σ, so |δ|/σ grows until the ray ends.
 double Mirage::largest_rise(double w, double way) const {
     const SurfaceRay ray(optics_, H_, w);
     const double most = std::min(way, ray.hit());
     return std::abs(ray.rise(most)) / most;
 }
 
-/// Extrema of w over a window: on its border, unless it holds the normal's own vanishing point.
+/// Extrema of w over a window. They lie on its border, unless the window contains the normal's vanishing point.
 std::array<double, 2> Mirage::slopes(const PixelWindow& window) const {
     const double x0 = window.x0, y0 = window.y0, x1 = x0 + window.width, y1 = y0 + window.height;
     double low = 1, high = -1;
@@ -144,6 +148,7 @@ bool Mirage::touches(const PixelWindow& window) const {
     return low <= high_ && high >= low_;
 }
 
+/// Largest value of the scan over w from low to high.
 double Mirage::largest_between(double low, double high) const {
     double largest = 0;
     for (std::size_t i = 0; i < scan_.size(); ++i) {
@@ -160,8 +165,8 @@ double Mirage::largest_shift(const PixelWindow& window) const {
         const double stretch = farthest_stretch(window);
         return kScanError * px_ * stretch * stretch * largest_between(std::max(low, low_), std::min(high, high_));
     }
-    // One slope and many heights. The layer changes the slope's square by Q at most: rays that it cannot turn round
-    // keep on to the plane, or past it.
+    // All rays have one slope and different heights. The air changes the square of the slope by Q at most. Rays that it
+    // cannot turn round go on to the plane, or away from it.
     double highest = 0;
     for (const int i : {0, window.width})
         for (const int j : {0, window.height}) highest = std::max(highest, frame(window.x0 + i, window.y0 + j).H);
@@ -210,7 +215,7 @@ void Mirage::response(int x, int y, const PixelRay& pixel, std::span<const doubl
         PixelRay up, down;
         double width = 2 * size;
         if (!ray(x, y, up, step) || !ray(x, y, down, {-step.lift, -step.tilt})) return;
-        // a ray on the other side of the critical angle ends elsewhere
+        // A ray on the other side of the critical angle ends elsewhere: a one-sided difference must do.
         if (std::isfinite(up.end) != std::isfinite(pixel.end)) up = pixel, width = size;
         if (std::isfinite(down.end) != std::isfinite(pixel.end)) down = pixel, width -= size;
         for (std::size_t k = 0; k < z.size(); ++k) {

@@ -1,23 +1,26 @@
-/// Mirages: a heated or cooled plane in front of a camera, as a displacement by depth that is exact and not first
-/// order.
+/// Mirages: how a heated or cooled plane in front of a camera displaces what lies behind, by pixel and depth, exactly
+/// and not to first order.
 ///
-/// A pixel's straight ray leaves with w, the sine of its elevation over the plane; SurfaceRay bends it. Where the bent
-/// ray crosses axial depth z it is δ above the straight ray over the same spot of the plane, and the object there shows
-/// at
-///     d(p, z) = δ/z · f_px (n·right - s_x n·forward, -(n·up - s_y n·forward) · pixel aspect)
-/// from the pixel, exactly (s the pixel's slope, n the plane's normal; orthographic: δ for δ/z, and s = 0). A ray that
-/// meets the plane ends there: beyond that depth, d stays. Hence over a hot plane all rays below the critical angle
-/// pass on and show what lies behind, as in a mirror; over a cold one rays from behind the horizon come down to the
-/// camera. The plane itself may be tilted.
+/// Rays. The straight ray of a pixel leaves with w, the sine of its elevation over the plane, and SurfaceRay bends it.
+/// Where the bent ray is at axial depth z, it is δ above the straight ray over the same spot of the plane. The object
+/// there appears displaced by
+///     d(p, z) = δ/z · f_px (n·right - s_x n·forward, -(n·up - s_y n·forward) · pixel aspect),
+/// exactly; s is the pixel's slope, n the plane's normal. (In an orthographic view δ stands for δ/z, and s = 0.) A ray
+/// that meets the plane ends there, and d keeps its value beyond that depth. Over a hot plane, all rays below the
+/// critical angle pass on and show what lies behind, as a mirror would. Over a cold plane, rays from behind the horizon
+/// come down to the camera. The plane may be tilted.
 ///
-/// The plane is better known than any depth buffer, whose facets are metres long near the horizon. A pixel whose depth
-/// lies on the plane or below, within kGroundTolerance and half a pixel, is *ground*: it stands in no ray's way, and
-/// rays end on the plane itself (meet.h). What stands up from the plane, hills included, is an object as ever.
+/// Ground. The plane is better known than any depth buffer, whose facets are metres long near the horizon. A pixel is
+/// *ground* if its depth lies on the plane or below it, within kGroundTolerance and half a pixel. Ground stands in no
+/// ray's way: rays end on the plane itself (mirage_meeting.h). All that stands up from the plane is an object, hills
+/// included.
 ///
-/// Several surfaces add, each as if it were alone: right where each ray is bent much by one at most, as over road and
-/// wall. Surfaces about parallel to each other bend the same rays one after the other, and are refused.
+/// Several surfaces. Each bends rays as if it were alone, and displacements add. This is right where at most one of
+/// them bends a ray much, as road and wall do. Surfaces that are about parallel bend the same rays one after the other,
+/// and are refused.
 ///
-/// Accuracy: kMirageError [px] for rays that move by more than kMirageThreshold; less counts as nothing.
+/// Accuracy: kMirageError [px] for rays that move by more than kMirageThreshold. Smaller displacements count as none.
+/// Theory: PHYSICS.md#mirage.
 #pragma once
 
 #include <array>
@@ -25,6 +28,8 @@
 #include <string>
 #include <vector>
 
+#include "noise/medium/optics.h"
+#include "noise/surface/surface_spec.h"
 #include "warp/displace/grid/ray_frame.h"
 #include "warp/displace/grid/shift.h"
 #include "warp/displace/media/surface/surface_ray.h"
@@ -32,32 +37,33 @@
 
 namespace eikonal {
 
-/// [px] within the display window.
+/// [px], within the display window.
 inline constexpr double kMirageThreshold = 0.001, kMirageError = 0.005;
-/// A depth within this height of the plane, and half a pixel's, is the plane's [m].
+/// Greatest height over the plane of what counts as ground, besides half a pixel [m].
 inline constexpr double kGroundTolerance = 0.005;
-/// |cosine| between the normals of two surfaces from which they do not add.
+/// Least |cosine| between the normals of two surfaces that do not add.
 inline constexpr double kParallelSurfaces = 0.5;
 
-/// Another start of a pixel's ray: higher over the plane [m], and steeper, in metres a metre of axial depth.
+/// Another start of a pixel's ray.
 struct Launch {
-    double lift = 0, tilt = 0;
+    double lift = 0;  ///< higher over the plane [m]
+    double tilt = 0;  ///< steeper: metres of height by metre of axial depth
 };
 
-/// One surface for one camera. Immutable, thread-safe. A function of camera and medium alone.
+/// One surface for one camera. Immutable and thread-safe. A function of camera and medium alone.
 class Mirage {
   public:
-    /// spec.normal: of unit length. farthest: axial depth that will be asked for [m]. medium: what messages call it,
-    /// as "medium.2".
+    /// spec.normal: of unit length. farthest: largest axial depth that will be asked for [m]. medium: its name in
+    /// messages, for example "medium.2".
     /// UserError: the camera is not above the surface; the index is not positive everywhere.
     Mirage(const SurfaceSpec& spec, const IndexLaw& law, double exaggeration, RayEquation equation,
            const Camera& camera, double farthest, const std::string& medium);
 
     /// Whether any pixel of the window may move by kMirageThreshold.
     bool touches(const PixelWindow& window) const;
-    /// Bound of |d| in pixels over the window's pixels and depths up to farthest.
+    /// Bound of |d| over the window's pixels and all depths up to `farthest` [px].
     double largest_shift(const PixelWindow& window) const;
-    /// Whether depth z at a pixel lies on the plane or below.
+    /// Whether depth z at a pixel is ground.
     bool on_ground(int x, int y, double z) const {
         const double climb = climb_[0] + climb_[1] * x + climb_[2] * y;
         return perspective_ ? H_ + z * climb <= kGroundTolerance + z * half_pixel_
@@ -69,36 +75,40 @@ class Mirage {
     struct PixelRay {
         SurfaceRay ray;
         double along = 1, across = 0;     ///< z = along σ + across (h - H)
-        double end = 0;                   ///< axial depth where it meets the plane; infinite if never
-        double shift_x = 0, shift_y = 0;  ///< d of δ = 1 at z = 1
+        double end = 0;                   ///< axial depth where it meets the plane; infinite if it never does
+        double shift_x = 0, shift_y = 0;  ///< d for δ = 1 m at z = 1 m
         Launch launch;
     };
-    /// False if the pixel moves by less than kMirageThreshold at any depth; `out` is then untouched.
+    /// Bends the ray of a pixel. False if the pixel moves by less than kMirageThreshold at every depth; `out` is then
+    /// left as it was.
     bool ray(int x, int y, PixelRay& out, const Launch& launch = {}) const;
-    /// δ at axial depth z, from the pixel's own straight ray [m]: that of its end beyond that.
+    /// δ at axial depth z, counted from the pixel's own straight ray [m]. Beyond the ray's end it is that of the end.
     double rise(const PixelRay& pixel, double z) const {
         const double way = z < pixel.end ? z : pixel.end;
         return pixel.ray.rise_where(z, pixel.along, pixel.across) + pixel.launch.lift + pixel.launch.tilt * way;
     }
+    /// d at axial depth z > 0.
     Shift shift(const PixelRay& pixel, double z) const {
         const double scale = rise(pixel, z) / (perspective_ ? (z < pixel.end ? z : pixel.end) : 1);
         return {static_cast<float>(scale * pixel.shift_x), static_cast<float>(scale * pixel.shift_y)};
     }
-    /// Axial depth where a pixel's ray turns round over the plane or meets it; 0 if it does neither.
+    /// Axial depth where a pixel's ray turns upwards over the plane, or meets it; 0 if it does neither.
     double anchor(const PixelRay& pixel) const;
-    /// A = ∂h/∂H and B = ∂h/∂(slope by depth) of a pixel's bent ray, at axial depths z, ascending; up to its end.
+    /// How the height h of a pixel's bent ray depends on the ray's start: A = ∂h/∂lift and B = ∂h/∂tilt [m] at the
+    /// axial depths z, in ascending order. Beyond the ray's end they are those of the end.
     void response(int x, int y, const PixelRay& pixel, std::span<const double> z, std::span<double> A,
                   std::span<double> B) const;
-    /// d at z = 1 of a bend of one metre across the plane, and along it at right angles to the pixel's ray.
+    /// d at z = 1 m of a bend by one metre: across the plane, and along the plane at right angles to the pixel's ray.
     struct Axes {
         dvec2 across, along;
     };
     Axes axes(int x, int y) const;
-    /// Sine of a pixel's elevation over the plane, and of a quarter of a pixel.
+    /// Sine of the elevation of a pixel's straight ray over the plane.
     double elevation(int x, int y) const;
-    /// Which way it bends rays, and lifts or lowers where they are: 1 up, from a hot surface, -1 down, to a cold one.
-    double way() const { return optics_.sign; }
+    /// The same of a quarter of a pixel.
     double quarter_pixel() const { return 0.25 / px_; }
+    /// Direction in which rays are bent: 1 for up, from a hot surface, -1 for down, to a cold one.
+    double bend_sign() const { return optics_.sign; }
     bool perspective() const { return perspective_; }
 
   private:
@@ -115,14 +125,15 @@ class Mirage {
     bool perspective_;
     double H_, farthest_;
     double right_, up_, lift_;     ///< the normal in camera axes
-    std::array<double, 3> climb_;  ///< of a pixel's ray by metre of depth (orthographic: its height): affine in x, y
-    double half_pixel_;            ///< of that, over half a pixel
+    std::array<double, 3> climb_;  ///< height that a pixel's ray gains by metre of depth (orthographic: its height), as
+                                   ///< an affine function of 1, x, y
+    double half_pixel_;            ///< change of that over half a pixel
     double px_;                    ///< pixels of d by unit of slope, at most
-    std::vector<std::array<double, 2>> scan_;  ///< w ascending, largest δ/σ up to farthest
-    double low_ = 0, high_ = 0;                ///< w outside which nothing moves
+    std::vector<std::array<double, 2>> scan_;  ///< pairs: w, ascending, and the largest δ/σ up to `farthest`
+    double low_ = 0, high_ = 0;                ///< outside of these w no pixel moves
 };
 
-/// UserError if two of these surfaces do not add. `mirages` are of one camera; names: what messages call them.
+/// UserError if two of these surfaces do not add. mirages: of one camera. names: theirs in messages.
 void check_surfaces(std::span<const Mirage> mirages, std::span<const std::string> names);
 
 }  // namespace eikonal

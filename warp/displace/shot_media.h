@@ -1,0 +1,71 @@
+/// All media of a shot in the warp: the air built once, each medium with the model that suits it, surfaces apart.
+///
+/// Surfaces (mirages) bend rays exactly and take no model; every other medium has a MediumBend. Media that move no
+/// pixel are left out, with a note.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "noise/air/air.h"
+#include "noise/surface/surface_medium.h"
+#include "warp/displace/media/medium_bend.h"
+#include "warp/displace/media/surface/mirage.h"
+#include "warp/displace/models/second_order.h"
+
+namespace eikonal {
+
+class ShotMedia {
+  public:
+    /// UserError: media or models that do not apply, a medium too strong for any map, a camera below a surface.
+    ShotMedia(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path);
+    ShotMedia(const ShotMedia&) = delete;  // the media refer to the context
+
+    const ShotContext& context() const { return shot_; }
+    const std::vector<std::unique_ptr<const MediumBend>>& bends() const { return bends_; }
+    /// Heated or cooled surfaces, and their index in Scene::media.
+    struct Surface {
+        std::size_t index;
+        std::shared_ptr<const SurfaceMedium> medium;
+    };
+    const std::vector<Surface>& surfaces() const { return surfaces_; }
+    /// Whether rays go through all media together (second-order).
+    bool second_order() const { return shot_.second_order(); }
+
+    /// One frame of every bend, in their order.
+    std::vector<std::unique_ptr<const BendInstant>> at(const FrameView& frame) const;
+    /// Rays through the sum of the media: those of second-order or, if `judge`, through the surfaces too, and in finer
+    /// steps than second-order's own if that is the model: what any model is judged by. own: at(frame). The gain
+    /// multiplies every n - n_ambient but the surfaces'.
+    BentRays bent_rays(const std::vector<std::unique_ptr<const BendInstant>>& own, const FrameView& frame,
+                       bool judge) const;
+    /// Mirages as a frame's camera sees them. UserError: the camera is not above a surface.
+    std::vector<Mirage> mirages(const Camera& camera, double farthest) const;
+
+    /// Bytes of one instant of everything, about.
+    std::uint64_t instant_bytes() const;
+    /// Displacer's.
+    std::vector<std::string> beyond_far(double farthest) const;
+    const std::vector<std::string>& notes() const { return notes_; }
+    const std::vector<std::string>& warnings() const { return warnings_; }
+    /// What the media themselves warn of, whether or not they are seen.
+    const std::vector<std::string>& air_warnings() const { return air_warnings_; }
+
+  private:
+    void add(std::size_t i, const std::shared_ptr<const Medium>& medium);
+    void add_surface(std::size_t i, std::shared_ptr<const SurfaceMedium> medium);
+    void keep(std::unique_ptr<const MediumBend> bend);
+    void warn_of_folding(const MediumBend& bend);
+    void check_camera_stays_above(std::size_t i, const GroundPlane& ground) const;
+    void refuse_other_model() const;
+
+    ShotContext shot_;
+    std::vector<std::unique_ptr<const MediumBend>> bends_;
+    std::vector<Surface> surfaces_;
+    std::vector<std::string> surface_names_;  ///< for messages
+    std::vector<Mirage> reference_mirages_;   ///< as the reference camera sees them
+    std::vector<std::string> notes_, warnings_, air_warnings_;
+};
+
+}  // namespace eikonal

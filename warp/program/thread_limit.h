@@ -1,0 +1,20 @@
+/// How many threads a program uses.
+#pragma once
+
+#include <tbb/global_control.h>
+
+namespace eikonal {
+
+/// While it lives, oneTBB and the image library use no more than so many threads.
+class ThreadLimit {
+  public:
+    /// threads: 0 for all processors.
+    explicit ThreadLimit(int threads);
+    int threads() const { return threads_; }
+
+  private:
+    int threads_;
+    tbb::global_control control_;
+};
+
+}  // namespace eikonal
