@@ -58,7 +58,7 @@ double Medium::farthest_part(const dvec3&) const {
 
 FieldSlices Medium::slices(double t, const ForceLaw& law) const {
     const std::shared_ptr<const MediumInstant> instant = at(t, {.law = law});
-    const auto [low, high] = instant->shown_box();
+    const dvec3 low = instant->shown_box().low, high = instant->shown_box().high;
     const dvec3 spacing = (high - low) / double{kFieldSamples - 1};
     FieldSlices slices{kFieldSamples, kFieldSamples, kFieldSamples, {}, {}, {}};
     slices.position = [=](int z) { return low.z + z * spacing.z; };

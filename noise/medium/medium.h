@@ -100,8 +100,8 @@ struct ShotBudget {
 /// What a medium is built for.
 struct MediumSetting {
     std::string name;  ///< "medium.2", for messages
-    OpticsSpec optics;
-    std::optional<ShotFrame> frame;                               ///< needed by thin screens (std::logic_error without)
+    OpticsSpec optics{};
+    std::optional<ShotFrame> frame{};                             ///< needed by thin screens (std::logic_error without)
     double bend_error = std::numeric_limits<double>::infinity();  ///< allowed of interpolation: as InterpolationBend
     /// Whether rays will be followed through instants. If not, what only at() needs is neither made nor counted in the
     /// budget, and at() may throw std::logic_error.

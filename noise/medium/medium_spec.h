@@ -79,8 +79,11 @@ struct Held final : Holder {
 
 class MediumSpec {
   public:
-    template <MediumParameters P>
-    MediumSpec(P parameters) : held_(std::make_unique<detail::Held<P>>(std::move(parameters))) {}
+    /// Implicit, so that a list of parameters is a list of media.
+    template <class P>
+    requires(!std::same_as<P, MediumSpec> && MediumParameters<P>)
+        MediumSpec(P parameters)  // NOLINT(google-explicit-constructor)
+        : held_(std::make_unique<detail::Held<P>>(std::move(parameters))) {}
     MediumSpec(const MediumSpec& other) : held_(other.held_->clone()) {}
     MediumSpec(MediumSpec&&) noexcept = default;
     MediumSpec& operator=(MediumSpec other) noexcept {
