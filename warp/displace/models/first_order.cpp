@@ -6,8 +6,8 @@ namespace eikonal {
 namespace {
 
 constexpr int kMostDepths = 33;
-/// The nearest depth, in cells: within one, X is a parabola, and pixels of next to no depth need no depths of their
-/// own.
+/// The nearest depth of a grid, in cells. Within one cell X is a parabola in depth, so that nearer pixels need no
+/// depths of their own.
 constexpr double kNearestDepthCells = 0.1;
 
 }  // namespace
@@ -21,7 +21,7 @@ DisplacementGrid FirstOrderRays::grid(const Camera& camera, double nearest, doub
         const double wanted = (farthest - nearest) * cells_along(camera.forward) / 2;
         const int intervals = std::clamp(static_cast<int>(std::ceil(std::min(wanted, 1e6))), 1, kMostDepths - 1);
         for (int i = 0; i <= intervals; ++i) {
-            // near objects need finer depths, their angles being the larger
+            // Near objects need finer depths, because their angles are larger.
             const double t = static_cast<double>(i) / intervals;
             grid.depths.push_back(i == 0           ? nearest
                                   : i == intervals ? farthest

@@ -1,11 +1,13 @@
-/// Model `first-order`: Eq. 7 integrated along every node's own ray, through any field that can be sampled at a point.
+/// Model `first-order`: integrates Eq. 7 along the straight ray of every node, through any field that can be sampled at
+/// a point.
 ///
-///     x1(z) = L² ∫₀^z (z - w) F(P(w)) dw        PHYSICS.md#first-order; w is axial depth, L the ray's metres a metre
-/// of depth
+///     x1(z) = L² ∫₀^z (z - w) F(P(w)) dw        PHYSICS.md#first-order
 ///
-/// by two-point Gauss-Legendre rules on steps no longer than a cell of the field along the ray, so that no eddy is
-/// skipped. An aperture is a bundle of parallel (orthographic) or converging (perspective; on the object at `focus`)
-/// rays whose forces are averaged.
+/// w is the axial depth, and L is the length of the ray per metre of depth. The integral is computed by the two-point
+/// Gauss-Legendre rule on steps no longer than a cell of the field along the ray, so that no eddy is skipped.
+///
+/// An aperture is a bundle of rays whose forces are averaged. The rays are parallel in an orthographic view; in
+/// perspective they converge at the depth `focus`.
 #pragma once
 
 #include <algorithm>
@@ -20,33 +22,35 @@
 
 namespace eikonal {
 
-/// Rms error of a lattice's force that its spline is made finer for, relative to the rms (lattice_spline_error): twice
-/// as fine as the lattice does even for power up to Nyquist. Lattices beyond 128³ keep to their own cells.
+/// Allowed rms error of a lattice's force, relative to its rms (lattice_spline_error). The spline is refined until its
+/// error is below. A spline twice as fine as the lattice meets this even with power up to Nyquist. Lattices beyond 128³
+/// keep their own cells.
 inline constexpr double kFirstOrderSplineError = 0.015;
-/// Rms error against Eq. 7 along the lattice's trigonometric sum, relative to the rms, for any spectrum; hence the
-/// difference from `spectral` on any lattice to 128³. (tests/warp/displace/displacement_test.cpp)
+/// Rms error against Eq. 7 along the lattice's trigonometric sum, relative to the rms, for any spectrum. It is also the
+/// difference from `spectral` on any lattice up to 128³. (tests/warp/displace/displacement_test.cpp)
 inline constexpr double kFirstOrderError = 0.03;
 
-/// Steps of a ray at most: scenes and frames that need more within the picture are refused (ray_steps.h). Nodes beyond
-/// its edge, which only interpolation reads, are cut to so many a depth.
+/// Largest number of steps of a ray. Scenes and frames that need more within the picture are refused (ray_steps.h).
+/// Nodes beyond the picture's edge serve only the interpolation; their rays take at most so many steps between depths.
 inline constexpr double kMostFirstOrderSteps = 20000;
 
 struct FirstOrderRays {
     double strength;            ///< multiplies ∇n: ray equation and exaggeration
-    dvec3 cell;                 ///< of the field along x, y, z [m]
+    dvec3 cell;                 ///< cell of the field along x, y, z [m]
     double aperture;            ///< diameter [m]; 0: a point
     double focus;               ///< axial depth on which a perspective aperture's rays converge [m]
     std::stop_token stop = {};  ///< as DisplacerSettings
 
-    /// Smallest cell, and cells a metre along a direction.
+    /// The smallest side of a cell [m]. Below: the number of cells per metre along a direction.
     double finest_cell() const { return std::min({cell.x, cell.y, cell.z}); }
     double cells_along(const dvec3& direction) const { return glm::length(direction / cell); }
 
-    /// A grid without nodes whose depths are evenly spaced in the logarithm, a step or two apart where that is not too
-    /// many.
+    /// A grid without nodes. Its depths are evenly spaced in their logarithm. They are one or two steps apart unless
+    /// that makes too many.
     DisplacementGrid grid(const Camera& camera, double nearest, double farthest) const;
 
-    /// Adds X and S at every node and depth. field.sample(x) gives an IndexSample. FrameError once a stop is requested.
+    /// Adds X and S at every node and depth. field.sample(x) returns an IndexSample. FrameError once a stop is
+    /// requested.
     template <class Field>
     void fill(DisplacementGrid& grid, const Camera& camera, const Field& field) const;
 
@@ -70,9 +74,9 @@ void FirstOrderRays::fill_node(DisplacementGrid& grid, const Camera& camera, con
         return sum / static_cast<double>(disc.size());
     };
     constexpr double kGauss = 0.21132486540518711775;  // (1 - 1/√3)/2
-    dvec3 x{0, 0, 0}, slope{0, 0, 0};                  // of ∫∫F in axial depth
+    dvec3 x{0, 0, 0}, slope{0, 0, 0};                  // ∫∫F by axial depth, and its derivative
     double z = 0;
-    const double cells = cells_along(ray.direction);  // a metre of depth
+    const double cells = cells_along(ray.direction);  // cells per metre of depth
     const double scale = strength * ray.length * ray.length;
     for (std::size_t k = 0; k < grid.depths.size(); ++k) {
         const double target = grid.depths[k];

@@ -14,7 +14,7 @@ dvec3 unit(int axis) {
     return e;
 }
 
-/// Where a row of nodes reads the tables: an evenly spaced line in the lateral plane, in metres.
+/// Where a row of nodes reads the tables: evenly spaced points on a line in the lateral plane [m].
 struct TableLine {
     dvec3 first, step;  ///< world
 };
@@ -167,7 +167,7 @@ void DisplacementTables::fill(DisplacementGrid& grid, const Camera& camera) cons
                         camera, ray, scale * (double{v[2 * c]} * unit(axes[0]) + double{v[2 * c + 1]} * unit(axes[1])));
                 };
                 const dvec2 x = shift(x1);
-                // linear in u: the slope beyond the last layer is that of x1 ∝ u
+                // x1 is linear in u there, so the slope beyond the last depth is that of x1 ∝ u
                 const dvec2 s = layer.slope ? shift(slope) : x / layer.depth;
                 out[c] += Node{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(s.x),
                                static_cast<float>(s.y)};

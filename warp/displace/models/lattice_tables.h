@@ -1,14 +1,15 @@
-/// Models `table`, `tables` and `spectral`: displacement tables of a lattice, for rays along a lattice axis
+/// Models `table`, `tables` and `spectral`: displacement tables of a lattice for rays along a lattice axis
 /// (PHYSICS.md#displacement-tables).
 ///
-///  - table:    one slice of F times c·u, as the paper renders; c makes its rms right at the far distance, and only
-///  there.
-///  - tables:   exact tables at kTables path lengths, linearly interpolated in u: the paper's suggestion.
-///  - spectral: exact tables at the depths a frame needs, at most kMostSpectralDepths, Hermite-interpolated with
-///  dx1/du.
+///  - table:    one slice of F times c·u, as in the paper. The constant c makes the rms right at the far distance, and
+///              only there.
+///  - tables:   exact tables at kTables path lengths, linearly interpolated in u. The paper suggests this.
+///  - spectral: exact tables at the depths that a frame needs, at most kMostSpectralDepths, with Hermite interpolation
+///              from dx1/du.
 ///
-/// Orthographic rays start at the pixel's own place. In perspective (table and tables only) each pixel's ray is taken
-/// for one parallel to the axis through the point at kCentroid of its depth, the centroid of the weight 1 - w/D.
+/// In an orthographic view a ray starts at the pixel's own position. In perspective (table and tables only) each ray is
+/// replaced by a ray parallel to the axis. That ray goes through the point of the pixel's ray at kCentroid times its
+/// depth, which is the centroid of the weight 1 - w/D.
 #pragma once
 
 #include <vector>
@@ -45,21 +46,21 @@ struct DisplacementTables {
     void fill(DisplacementGrid& grid, const Camera& camera) const;
 };
 
-/// The lattice axis nearest to a camera's view, with the camera's place on it.
+/// The lattice axis that is nearest to the direction of a camera's view, and the camera's position on it.
 PathRays nearest_axis(const Camera& camera, double aperture);
-/// Cosine between the view and that axis.
+/// Cosine of the angle between the view and that axis.
 double axis_alignment(const Camera& camera, const PathRays& rays);
 
-/// table: `constant` is c, so that x1 = c u F. padding: that of path_padding, found once a shot.
+/// Tables of the model table. `constant` is c in x1 = c u F. padding: the result of path_padding, found once a shot.
 DisplacementTables slice_instant(const LatticeField& field, double t, const PathRays& rays, double far, double constant,
                                  double strength, int padding);
-/// tables and spectral: exact tables at `depths`.
+/// Tables of the models tables and spectral: exact ones at `depths` [m].
 DisplacementTables exact_instant(const LatticeField& field, double t, const PathRays& rays,
                                  const std::vector<double>& depths, DepthInterpolation interpolation, double strength,
                                  int padding);
 
-/// Depths of `spectral` for objects between nearest and farthest: evenly spaced, a lattice cell apart where that takes
-/// no more than kMostSpectralDepths; one where they are equal.
+/// Depths of `spectral` for objects between nearest and farthest [m]. They are evenly spaced: one lattice cell apart,
+/// or more if that takes more than kMostSpectralDepths. One depth if nearest and farthest are equal.
 std::vector<double> spectral_depths(const LatticeField& field, const PathRays& rays, double nearest, double farthest);
 
 }  // namespace eikonal

@@ -11,7 +11,8 @@
 namespace eikonal {
 namespace {
 
-/// How near an edge a step ends, or begins behind it, as a part of the path: beyond what rounding may confuse.
+/// A step ends this far before an edge of a medium, or begins this far behind it, as a part of the path. The distance
+/// is larger than rounding errors.
 constexpr double kHair = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -22,7 +23,7 @@ class BentRay {
         if (!(launch_ > 0)) lose_index(0);
     }
 
-    /// Follows the ray to axial depth `target`, and tells `visit` the end of every step.
+    /// Follows the ray to axial depth `target`, and calls `visit` at the end of every step.
     template <class Visit>
     void advance(double target, Visit&& visit) {
         while (z_ < target && !(lost_at_ < kInfinity)) {
@@ -30,7 +31,7 @@ class BentRay {
             const double length = glm::length(p);
             const dvec3 direction = p / length;
             const double left = target - z_;
-            // where there is force there is a medium
+            // A nonzero force at the end of the last step means that the ray is inside a medium.
             const bool within = force_known_ && force_ != dvec3(0);
             if (const double clear = within ? 0 : field_.clear_way(x, direction) / length; clear > 0) {
                 if (clear >= left) break;
@@ -62,7 +63,7 @@ class BentRay {
     double depth() const { return z_; }
     double lost_at() const { return lost_at_; }
     bool without_index() const { return without_index_; }
-    /// X and S of the bent ray where it is at the axial depth that it has been followed to: exact projection.
+    /// X and S of the bent ray at the axial depth that it has been followed to, by exact projection.
     std::array<double, 4> shift(const Camera& camera) const {
         const dvec3 p = ray_.direction + slope_;
         const double rate = glm::dot(p, camera.forward);
@@ -75,7 +76,8 @@ class BentRay {
     }
 
   private:
-    /// A part of the field's own, or that and what it says where that ends: nothing small is jumped over.
+    /// At most `longest_` times the step that the field calls safe. Where that is more than one safe step, the field is
+    /// asked again at the end of the first, so that no small feature is stepped over.
     double longest_step(const dvec3& x, const dvec3& direction) const {
         const double first = field_.longest_step(x, direction);
         if (longest_ <= 1 || !std::isfinite(first)) return longest_ * first;
@@ -102,8 +104,9 @@ class BentRay {
         return (ray_.length * ray_.length / (launch_ * launch_)) * force;
     }
 
-    /// Nyström's method: the force at the start, twice the middle in one, the end. The end's serves for the next start:
-    /// the two are apart by a part of the second order that falls with h³.
+    /// One step of Nyström's method. It takes the force at the start, twice in the middle and at the end; the two in
+    /// the middle are combined in one evaluation. The force at the end serves as the start of the next step. The two
+    /// differ by a part of the second order that falls with h³.
     void step(double h) {
         const dvec3 f1 = force_known_ ? force_ : acceleration(z_, x1_, slope_);
         const dvec3 f2 =
@@ -118,14 +121,14 @@ class BentRay {
     const AirInstant& field_;
     double longest_;
     StraightRay ray_;
-    double launch_;  ///< |dx/du| at the camera, hence metres of ray a unit of u where the straight ray is
+    double launch_;  ///< |dx/du| at the camera: metres of ray per unit of u where the ray is straight
     double z_ = 0;
     dvec3 x1_{0, 0, 0}, slope_{0, 0, 0};
-    dvec3 force_{0, 0, 0};  ///< where the last step ended
+    dvec3 force_{0, 0, 0};  ///< force at the end of the last step
     bool force_known_ = false;
     int steps_ = 0;
-    double lost_at_ = kInfinity;  ///< from there on it is not followed
-    bool without_index_ = false;  ///< for want of an index
+    double lost_at_ = kInfinity;  ///< axial depth from which on the ray is not followed [m]
+    bool without_index_ = false;  ///< whether the ray is lost because n <= 0
 };
 
 Node as_node(const std::array<double, 4>& s) {

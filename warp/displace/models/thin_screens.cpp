@@ -11,8 +11,8 @@
 namespace eikonal {
 namespace {
 
-/// The part of a slab ahead of a camera: depths along the reference axis, and the root of that part, which scales its
-/// bend.
+/// The part of a slab ahead of a camera: its depths along the reference axis [m], and the factor on its bend. The
+/// factor is the root of the part.
 struct Place {
     double near = 0, far = 0, weight = 0;
     double middle() const { return 0.5 * (near + far); }
@@ -25,7 +25,7 @@ Place place_of(const ScreenInstant& screen, double advance) {
     return {near, far, std::sqrt((far - near) / screen.thickness())};
 }
 
-/// How far the camera has advanced along the reference axis.
+/// How far the camera has advanced along the reference axis [m].
 double advance_of(const ThinScreens& model, const Camera& camera) {
     return glm::dot(camera.position - model.reference.position, model.reference.forward);
 }
@@ -34,11 +34,11 @@ bool same_axes(const Camera& a, const Camera& b) {
     return a.right == b.right && a.up == b.up && a.forward == b.forward;
 }
 
-/// A screen of a grid.
+/// A screen that a grid is computed from.
 struct Active {
     const ScreenInstant* screen;
     Place place;
-    ScreenInstant::Columns columns;  ///< of every row, under parallel axes
+    ScreenInstant::Columns columns;  ///< the same for every row; used under parallel axes only
 };
 
 /// The screens nearer than `farthest` whose nodes are `spacing` apart, nearest first.
@@ -54,7 +54,8 @@ std::vector<Active> active_screens(const ThinScreens& model, const Camera& camer
     return active;
 }
 
-/// Where a row of nodes lies on a screen under parallel axes: an evenly spaced line; x0 and step hold for every row.
+/// Where a row of nodes lies on a screen under parallel axes: evenly spaced points on a line [m]. x0 and step are the
+/// same for every row.
 struct ScreenLine {
     double x0, y0, step;
 };
@@ -68,7 +69,7 @@ ScreenLine line_on(const ThinScreens& model, const Place& place, const Camera& c
             glm::dot(moved, model.reference.up) + scale * first.y, scale * grid.spacing / camera.f_px};
 }
 
-/// g ∇ψ + ψ ∇g along a row, in place.
+/// Computes g ∇ψ + ψ ∇g along a row, in place.
 void apply_falloff(const ThinScreens& model, const ScreenLine& line, const Place& place, const Camera& camera,
                    const std::vector<float>& values, std::vector<float>& uv) {
     const Camera& reference = model.reference;
@@ -99,8 +100,8 @@ EIKONAL_CLONES void slant_factors(float sx, float step, float sy, float f, int n
     }
 }
 
-/// u += s (s·u)/(L + 1) at slopes s = (sx + i step, sy): M of noise/turbulence/screens/screen_force.h. uv: along the
-/// screen's axes, y up.
+/// u += s (s·u)/(L + 1) at slopes s = (sx + i step, sy). This is the matrix M of
+/// noise/turbulence/screens/screen_force.h. uv: bends along the screen's axes, y up.
 EIKONAL_CLONES void slant_bends(float sx, float step, float sy, int n, float* uv) {
     const float across = 1 + sy * sy;
     for (int i = 0; i < n; ++i) {
@@ -111,7 +112,7 @@ EIKONAL_CLONES void slant_bends(float sx, float step, float sy, int n, float* uv
     }
 }
 
-/// nodes[i] += factor[i] (length, slope) × (u, up·v): up is -pixel aspect.
+/// nodes[i] += factor[i] (length, slope) × (u, up·v), where up is minus the pixel aspect.
 EIKONAL_CLONES void add_bends(const float* uv, const float* factor, float length, float slope, float up, int n,
                               Node* nodes) {
     const Node lever{length, length * up, slope, slope * up};
@@ -122,7 +123,7 @@ EIKONAL_CLONES void add_bends(const float* uv, const float* factor, float length
     }
 }
 
-/// Rows of nodes under axes parallel to the reference camera's.
+/// Computes rows of nodes if the camera's axes are parallel to those of the reference camera.
 class AlignedRows {
   public:
     AlignedRows(const ThinScreens& model, DisplacementGrid& grid, const Camera& camera, std::vector<Active>& active)
@@ -148,7 +149,8 @@ class AlignedRows {
             slant_factors(slope_x_, slope_step(), slope_y_, static_cast<float>(camera_.f_px), grid_.columns,
                           factor_.data());
         }
-        // With a single layer the levers are the samples' weights, and the screens add up before they become nodes.
+        // With a single depth, each screen's bend is weighted by its lever, and the sum of the screens becomes the
+        // nodes.
         const bool single = grid_.depths.size() == 1;
         if (single) std::fill(uv_.begin(), uv_.end(), 0.0f);
         for (const Active& a : active_) {
@@ -162,7 +164,7 @@ class AlignedRows {
                 if (at.length > 0) store(row, k, at);
             }
         }
-        // Beyond its only layer the displacement stays as it is: X ∝ z in perspective.
+        // Beyond its only depth the displacement in pixels is constant: X ∝ z in perspective.
         if (!single) return;
         slant();
         store(row, 0, {1, grid_.perspective ? 1 / grid_.depths[0] : 0.0});
@@ -201,7 +203,7 @@ class AlignedRows {
     float slope_x_ = 0, slope_y_ = 0;  ///< of the row's first node
 };
 
-/// A row of nodes of any camera, ray by ray.
+/// Computes a row of nodes of a camera in any direction, ray by ray.
 void fill_turned_row(const ThinScreens& model, DisplacementGrid& grid, const Camera& camera,
                      const std::vector<Active>& active, int row) {
     const Camera& reference = model.reference;
@@ -210,10 +212,10 @@ void fill_turned_row(const ThinScreens& model, DisplacementGrid& grid, const Cam
         const StraightRay ray =
             straight_ray(camera, (grid.column0 + c) * grid.spacing + 0.5, (grid.row0 + row) * grid.spacing + 0.5);
         const double rate = glm::dot(ray.direction, reference.forward);
-        if (rate <= 0) continue;  // a ray at the very edge of a wide view that never meets the screens
+        if (rate <= 0) continue;  // a ray at the edge of a wide view that does not cross the screens
         const double start = glm::dot(ray.origin - reference.position, reference.forward);
         for (const Active& a : active) {
-            // places are measured from the camera; an orthographic ray may start elsewhere
+            // Places are measured from the camera, but an orthographic ray may start elsewhere.
             const double far = (a.place.far + advance - start) / rate;
             const double near = std::max(0.0, (a.place.near + advance - start) / rate);
             if (near >= far || near >= grid.depths.back()) continue;
@@ -265,7 +267,7 @@ std::vector<DisplacementGrid> ThinScreens::grids(const Camera& camera, double ne
                 if (end > nearest && end < farthest) grid.depths.push_back(end);
         std::sort(grid.depths.begin(), grid.depths.end());
         grid.depths.erase(std::unique(grid.depths.begin(), grid.depths.end()), grid.depths.end());
-        // Behind the last slab X is straight. (One layer alone stands for one depth: it has no slope.)
+        // Behind the last slab X is straight. A grid of one depth would not do: it has no slope.
         const double last = std::max(nearest, active.back().place.far);
         while (same_axes(camera, reference) && grid.perspective && grid.depths.size() > 2 &&
                grid.depths[grid.depths.size() - 2] >= last)

@@ -3,21 +3,22 @@
 ///     X(z) = f_px Σ_m lever_m(z) √L³ M ∇⊥ψ_m,      lever_m(z) = z - w_m behind slab m
 ///     (noise/turbulence/screens/screen_layout.h)
 ///
-/// so that d = X(D)/D is f_px Σ (1 - w_m/D) ∇⊥ψ_m on the axis. A slanted ray has L times the lever, and crosses L times
-/// the air, whose bend is √L times as large; and what turns it in its plane of slant shows L times as large again: M
-/// (noise/turbulence/screens/screen_force.h).
+/// On the axis d = X(D)/D is therefore f_px Σ (1 - w_m/D) ∇⊥ψ_m. A slanted ray differs in three ways. Its lever is L
+/// times as long. It crosses L times as much air, whose bend is √L times as large. A bend in the plane of the slant
+/// shows L times as large again, which the matrix M expresses (noise/turbulence/screens/screen_force.h).
 ///
-/// The screens are planes fixed in the world, perpendicular to the axis of the shot's reference camera and placed from
-/// its position, so that displacement is consistent when the camera moves: each ray is cut with the planes where it
-/// really meets them. A slab that the camera has partly passed keeps the part ahead: its bend is scaled by the root of
-/// that part (the variance of a slab is proportional to its thickness) and comes from that part's middle, so that
-/// nothing jumps when the camera flies through. The air ends at the far distance of the reference camera, and begins at
-/// its place: a camera that backs away has none before the first slab, one that advances is left with less.
+/// The screens are planes fixed in the world. They are perpendicular to the axis of the shot's reference camera and
+/// placed from its position. Each ray is intersected with these planes, so that displacement is consistent when the
+/// camera moves. A slab that the camera has partly passed keeps the part ahead. The variance of a slab is proportional
+/// to its thickness, so its bend is scaled by the root of that part. The bend acts in the middle of that part. Nothing
+/// jumps when the camera flies through a slab. The air begins at the reference camera and ends at its far distance. A
+/// camera behind the reference position has no air before the first slab, and one that has advanced has less air ahead.
 ///
-/// Under a camera that has turned, each ray's levers are its own; between the layers of a grid they are then a cubic
-/// through those at the axis' slabs, which errs by a few per cent of one screen's part at most.
+/// Under a camera that has turned, each ray has levers of its own. Between the depths of a grid they are interpolated
+/// by a cubic through the levers at the ends of the axis' slabs. The error is a few per cent of one screen's part at
+/// most.
 ///
-/// Range: the view axis within kWidestTurn of the reference axis; FrameError beyond.
+/// Range: the view axis lies within kWidestTurn of the reference axis; FrameError beyond.
 #pragma once
 
 #include <optional>
@@ -39,12 +40,12 @@ struct ThinScreens {
     double strength;  ///< multiplies ∇ψ: ray equation and exaggeration
     std::optional<Falloff> falloff;
 
-    /// Bands, empty as yet, for the depths nearest … farthest: screens whose pattern allows the same node spacing share
-    /// one, and its layers are the ends of their slabs, between which X is a parabola at most. Screens beyond
+    /// Grids without nodes for the depths nearest … farthest [m]. Screens whose pattern allows the same node spacing
+    /// share one grid. Its depths are the ends of their slabs; between these X is at most a parabola. Screens beyond
     /// `farthest` are left out.
     std::vector<DisplacementGrid> grids(const Camera& camera, double nearest, double farthest) const;
 
-    /// Sets X and S of the screens that `grid` stands for. Its nodes are zero.
+    /// Sets X and S of the screens that `grid` stands for. Its nodes must be zero.
     void fill(DisplacementGrid& grid, const Camera& camera) const;
 };
 
