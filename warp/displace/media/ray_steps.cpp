@@ -9,13 +9,13 @@
 namespace eikonal {
 namespace {
 
-/// Steps of a first-order ray beyond which it is warned that frames take long.
+/// Steps of a first-order ray above which the user is warned that frames take long.
 constexpr double kManySteps = 2000;
 
 }  // namespace
 
 double cells_a_metre(const ShotContext& shot, const Camera& camera, const dvec3& cell) {
-    double most = 0;  // of the rays through the corners, the longest and most oblique
+    double most = 0;  // largest over the rays through the corners, which are the longest and most oblique
     for (const double x : {0, shot.settings.width})
         for (const double y : {0, shot.settings.height})
             most = std::max(most, glm::length(straight_ray(camera, x, y).direction / cell));

@@ -1,4 +1,5 @@
-/// How many steps first-order rays take through cells of a given size: too many are refused, many are warned of.
+/// The number of steps that first-order rays take through cells of a given size. A scene with too many steps is
+/// refused. One with many steps causes a warning.
 #pragma once
 
 #include <string>
@@ -7,17 +8,18 @@
 
 namespace eikonal {
 
-/// Cells [m] that the picture's most oblique ray crosses a metre of depth.
+/// Number of cells [m] per metre of depth that the picture's most oblique ray crosses.
 double cells_a_metre(const ShotContext& shot, const Camera& camera, const dvec3& cell);
 
-/// A warning that frames take long, or nothing. medium: "medium.2". UserError for more than kMostFirstOrderSteps.
+/// A warning that frames take long, or an empty text. medium: "medium.2". UserError if a ray needs more than
+/// kMostFirstOrderSteps.
 std::string check_steps(const ShotContext& shot, const std::string& medium, const dvec3& cell);
 
-/// FrameError if those of a frame's camera and depth are too many.
+/// FrameError if the camera and depth of a frame need too many steps.
 void check_frame_steps(const ShotContext& shot, const std::string& medium, const dvec3& cell, const Camera& camera,
                        double farthest);
 
-/// A line on rays as far as `farthest` [m] that take long, or nothing.
+/// One line if rays as far as `farthest` [m] take long, else an empty text.
 std::string many_steps_beyond(const ShotContext& shot, const std::string& medium, const dvec3& cell, double farthest,
                               Model model);
 

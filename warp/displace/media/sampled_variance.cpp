@@ -8,7 +8,7 @@
 namespace eikonal {
 namespace {
 
-/// Steps that all rays of an estimate take together, about, and the fewest rays that it is taken from.
+/// Approximate number of steps of all rays of an estimate together, and the smallest number of rays.
 constexpr double kRmsSteps = 256e3;
 constexpr int kFewestRmsRays = 32;
 

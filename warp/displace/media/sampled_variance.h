@@ -1,27 +1,28 @@
-/// How strong a medium is, estimated from the displacement of rays spread over the picture and over time.
+/// The strength of a medium, estimated from the displacement of rays spread over the picture and over time.
 #pragma once
 
 #include "warp/displace/media/medium_bend.h"
 
 namespace eikonal {
 
-/// Rays that the expected rms and focusing of media without a closed form are estimated from, fewer where they are
-/// long.
+/// Number of rays from which the expected rms and focusing are estimated, for media without a closed form. Fewer rays
+/// are used if each takes many steps.
 inline constexpr int kRmsRays = 256;
 
 struct SampledVariance {
-    double shift = 0;  ///< of |d| [px²]
-    double slope = 0;  ///< of ∂d_x/∂x and ∂d_y/∂y, pixel to pixel
+    double shift = 0;  ///< variance of |d| [px²]
+    double slope = 0;  ///< variance of ∂d_x/∂x and ∂d_y/∂y, from pixel to pixel
 };
 
-/// Of rays spread over the picture and their neighbours one pixel to the right or below, by turns, each at its own
-/// instant, for objects at axial distance D. steps: of one ray, about.
+/// Estimates both for objects at axial distance D [m]. Rays are spread over the picture, each at its own instant. Each
+/// is compared with its neighbour one pixel to the right or below, by turns. steps: approximate number of steps of one
+/// ray.
 SampledVariance sampled_variance(const ShotContext& shot, const MediumBend& bend, double D, double steps);
 
-/// Pixel i of many that keep apart, however many there are.
+/// Pixel i of a sequence of pixels that keep apart from each other, however many are taken.
 std::array<int, 2> spread_pixel(int i, int width, int height);
 
-/// d of a pixel for an object at D, and how it changes to the next one, to the right or below.
+/// d of a pixel for an object at D, and its change to the next pixel to the right or below.
 struct PixelPair {
     PixelWindow window;
 

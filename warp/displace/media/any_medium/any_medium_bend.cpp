@@ -14,15 +14,15 @@
 namespace eikonal {
 namespace {
 
-/// Rays across and down the picture, and points on each, at which safe steps are asked for.
+/// Safe steps are asked for on kProbeRays × kProbeRays rays across the picture, at kProbePoints points of each.
 constexpr int kProbeRays = 5, kProbePoints = 64;
-/// A feature is taken to be so many of the longest safe steps wide.
+/// The smallest feature is assumed to be this many times as wide as the safe step is long.
 constexpr double kStepsPerFeature = 2;
-/// How near an edge of the force a step ends, or begins behind it, as a part of the path: beyond what rounding may
-/// confuse.
+/// A step ends this far before an edge of the force, or begins this far behind it, as a part of the path. The distance
+/// is larger than rounding errors.
 constexpr double kHair = 1e-9;
 
-/// The smallest feature of a medium that rays of a view may meet, and the depths between which they do [m].
+/// The smallest feature that the rays of a view may cross, and the depths between which they cross the medium [m].
 struct Features {
     double smallest = std::numeric_limits<double>::infinity();
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
@@ -50,7 +50,7 @@ Features probe(const MediumInstant& air, const FrameView& frame, const PixelWind
     return features;
 }
 
-/// ∫∫F of one straight ray, followed by axial depth.
+/// ∫∫F along one straight ray, up to an axial depth that grows.
 class RayIntegral {
   public:
     RayIntegral(const MediumInstant& air, double strength, const StraightRay& ray)
@@ -70,9 +70,9 @@ class RayIntegral {
             else
                 integrate(std::min({left, air_.longest_step(x, direction_) / ray_.length, edge - hair}));
         }
-        if (z_ < target) drift(target - z_);  // more steps than are worth taking: the rest goes straight on
+        if (z_ < target) drift(target - z_);  // the largest number of steps is reached: the rest is straight
     }
-    /// L² ∫∫F and its derivative by depth.
+    /// L² ∫∫F, and its derivative by depth.
     dvec3 bend() const { return ray_.length * ray_.length * bend_; }
     dvec3 slope() const { return ray_.length * ray_.length * slope_; }
 
@@ -117,7 +117,7 @@ class Instant final : public LaidOutInstant {
         cell_ = dvec3(is_met ? features.smallest : frame.farthest);
         FirstOrderRays rays{strength_, cell_, aperture_, focus_};
         DisplacementGrid grid = rays.grid(frame.camera, frame.nearest, frame.farthest);
-        // where the medium begins and ends X changes its course
+        // X changes its course at the depths where the medium begins and ends.
         for (const double z : {features.nearest, features.farthest})
             if (is_met && z > frame.nearest && z < frame.farthest) grid.depths.push_back(z);
         std::sort(grid.depths.begin(), grid.depths.end());

@@ -1,9 +1,10 @@
-/// Any medium in the warp, through its interface alone: model `first-order` by integration along straight rays.
+/// Any medium in the warp, through its interface alone. It is the model `first-order`, integrated along straight rays.
 ///
 ///     x1(z) = L² ∫₀^z (z - w) F(P(w)) dw        PHYSICS.md#first-order
 ///
-/// by two-point Gauss-Legendre rules on steps as long as the medium says is safe; steps end where its force jumps, and
-/// clear ways are crossed in one. So a new kind of medium is warped from the day that its folder exists.
+/// The integral is computed by the two-point Gauss-Legendre rule. A step is as long as the medium says is safe. It ends
+/// where the force of the medium jumps. A stretch without force is crossed in one step. A new kind of medium therefore
+/// works in the warp without any code of its own there.
 ///
 /// The spacing of nodes follows from the shortest safe steps on rays spread over the picture. kAnyMediumError bounds
 /// the error for media whose longest_step is half of their smallest feature or less. An aperture averages over a bundle

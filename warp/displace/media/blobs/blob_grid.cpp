@@ -10,14 +10,15 @@
 namespace eikonal {
 namespace {
 
-/// Nodes that a loop over a row takes at a time: rows are filled up to whole ones, which saves the loops' remainders.
+/// Loops over a row take this many nodes at a time. Rows are padded to whole multiples, so that no remainder is left.
 constexpr int kLanes = 8;
 
 int whole_lanes(int n) {
     return (n + kLanes - 1) / kLanes * kLanes;
 }
 
-/// The nodes of a grid as four planes of floats, X.x, X.y, S.x, S.y, for loops to add to; rows are kLanes longer.
+/// The nodes of a grid as four planes of floats: X.x, X.y, S.x, S.y. Loops add to them. Rows are kLanes longer than the
+/// grid's.
 class Planes {
   public:
     Planes(const DisplacementGrid& grid, std::size_t depths)
@@ -37,13 +38,13 @@ class Planes {
     std::vector<float> values_;
 };
 
-/// nodes = (X, S) of one layer.
+/// nodes = (X, S) of one depth.
 EIKONAL_CLONES void store_layer(const float* __restrict X, const float* __restrict Y, const float* __restrict SX,
                                 const float* __restrict SY, int n, Node* __restrict to) {
     for (int i = 0; i < n; ++i) to[i] = Node{X[i], Y[i], SX[i], SY[i]};
 }
 
-/// What lies behind goes on straight: to a layer dz beyond, X and S += those of the layer before.
+/// Behind a blob X is straight. Adds X and S of one depth to those of another, dz metres behind it.
 EIKONAL_CLONES void go_on(const float* __restrict X0, const float* __restrict Y0, const float* __restrict SX0,
                           const float* __restrict SY0, float dz, int n, float* __restrict X, float* __restrict Y,
                           float* __restrict SX, float* __restrict SY) {
@@ -60,13 +61,13 @@ EIKONAL_CLONES void add_nodes(const float* __restrict X, const float* __restrict
     for (int i = 0; i < n; ++i) to[i] += Node{X[i], Y[i], SX[i], SY[i]};
 }
 
-/// A row of rays past one blob: ray i has the slopes sx + i step, sy.
+/// A row of rays that pass one blob. Ray i has the slopes sx + i step, sy.
 struct RowGeometry {
     double right, up, forward, inverse_sigma, amplitude, aspect;
     double sx, step, sy;
 };
 
-/// What a row of nodes past one blob has in common for all depths, for layers within the blob.
+/// What a row of nodes has in common at all depths within one blob.
 struct RowPast {
     std::vector<float> x, y;        ///< amplitude e^{-b²/σ²} b⊥ [px m]
     std::vector<double> a, length;  ///< -w_j/σ; L/σ
@@ -74,8 +75,8 @@ struct RowPast {
     static std::size_t to(int n) { return static_cast<std::size_t>(whole_lanes(n)); }
 };
 
-/// What cancels is double, the rest float; in two loops, each of one width. g by value: the arrays then cannot alias
-/// it.
+/// Differences that would lose digits are computed in double, all else in float. There are two loops, each of one
+/// width. g is passed by value, so that the arrays cannot alias it.
 EIKONAL_CLONES void pass_perspective(const RowGeometry g, int n, float* __restrict x, float* __restrict y,
                                      double* __restrict a, double* __restrict length) {
     const double lat_y = g.sy * g.forward - g.up, along = g.forward + g.sy * g.up, square = 1 + g.sy * g.sy;
@@ -113,7 +114,7 @@ EIKONAL_CLONES void pass_orthographic(const RowGeometry g, int n, float* __restr
     }
 }
 
-/// nodes += the blob at depth z, within it or with the camera near it.
+/// nodes += the blob at depth z, which lies within the blob or is seen by a camera near it.
 EIKONAL_CLONES void add_layer(const float* __restrict x, const float* __restrict y, const double* __restrict a,
                               const double* __restrict length, double z, int n, float* __restrict X,
                               float* __restrict Y, float* __restrict SX, float* __restrict SY) {
@@ -127,8 +128,8 @@ EIKONAL_CLONES void add_layer(const float* __restrict x, const float* __restrict
     }
 }
 
-/// A row of rays all the way through one blob, up to depth z behind it, as polynomials in the node's number i. Within
-/// the blob's disc no term of theirs is much larger than their sum: single precision loses nothing.
+/// A row of rays that pass one blob completely, up to depth z behind it. Its terms are polynomials in the number i of
+/// the node. Within the blob's disc no term is much larger than their sum, so that single precision loses nothing.
 struct WholePass {
     float x, dx, y;             ///< b⊥ [m]: x + i dx, y
     float twist, dtwist;        ///< |b|² L² = b⊥² + (twist + i dtwist)²
@@ -156,7 +157,7 @@ struct WholePass {
     }
 };
 
-/// nodes += the blob well ahead of the camera, at a depth behind it: i1 = c √π, straight in z.
+/// nodes += the blob, which lies completely between the camera and the depth: i1 = c √π, linear in z.
 EIKONAL_CLONES void add_whole(const WholePass p, int n, float* __restrict X, float* __restrict Y, float* __restrict SX,
                               float* __restrict SY) {
     for (int k = 0; k < n; ++k) {
@@ -179,8 +180,8 @@ struct NodeRange {
     int begin, end;
 };
 
-/// Fills a grid with blobs, one after the other. The layers within a blob get it one by one; from the first layer
-/// behind it on it is straight, so that one gets it, and finish() takes it on to those beyond.
+/// Fills a grid with blobs, one after the other. A blob is added to every depth within it and to the first depth behind
+/// it. From there on it is straight, and finish() carries the sum of all blobs on to the depths beyond.
 class BandFiller {
   public:
     BandFiller(DisplacementGrid& grid, const Camera& camera)
@@ -201,22 +202,23 @@ class BandFiller {
     dvec2 slope(int column, int row) const {
         return camera_.slope((grid_.column0 + column) * grid_.spacing + 0.5, (grid_.row0 + row) * grid_.spacing + 0.5);
     }
-    /// Those of `within` that a blob's disc cuts out of a row whose first node, of the grid, has a slope.
+    /// The columns of `within` that lie in a blob's disc, in a row whose first node has the slope `first`.
     NodeRange chord(const SeenBlob& b, const dvec2& first, const NodeRange& within) const;
-    /// One row of a blob, at every depth that is not straight behind another.
+    /// Adds one row of a blob at every depth within it and at the first depth behind it.
     void add_row(const SeenBlob& b, bool ahead, int j, const NodeRange& columns);
 
     DisplacementGrid& grid_;
     const Camera& camera_;
-    bool goes_on_;  ///< whether there is a layer beyond another
+    bool goes_on_;  ///< whether the grid has more than one depth
     Planes within_, behind_;
     RowPast past_;
-    double step_;     ///< between nodes' slopes
-    double widest2_;  ///< largest square of a row's slopes
+    double step_;     ///< difference of slope between neighbouring nodes
+    double widest2_;  ///< largest square of a slope in the row
 };
 
 NodeRange BandFiller::chord(const SeenBlob& b, const dvec2& first, const NodeRange& within) const {
-    // b² L² = lat_x² + lat_y² + twist² is at least the first two, L² at most that of the row's ends
+    // b² L² = lat_x² + lat_y² + twist² is at least the sum of the first two terms. L² is at most that of the row's
+    // ends.
     double forward = 1, reach2 = b.reach * b.reach;
     if (grid_.perspective) {
         if (b.forward <= b.reach) return within;
@@ -278,7 +280,7 @@ void BandFiller::finish() {
         }
 }
 
-/// Adds one blob to the part of a grid that its disc holds.
+/// Adds one blob to the part of the grid that its disc covers.
 void BandFiller::add(const SeenBlob& b) {
     const auto node_floor = [&](int pixel) { return floor_div(pixel, grid_.spacing); };
     const NodeRange columns{std::max(0, node_floor(b.disc.x0) - grid_.column0),

@@ -17,8 +17,9 @@
 namespace eikonal {
 namespace {
 
-/// Blobs that the expected rms is taken over, instants that have so many between them, those with blobs if a wind,
-/// which is dear, carries these, and pixels of each.
+/// The expected rms is taken over instants that show about kRmsBlobs blobs in all, and over at least kFewestRmsPixels
+/// pixels of each. If a wind carries the blobs, at most kMostRmsWinds instants with blobs are used, because a wind is
+/// expensive.
 constexpr double kRmsBlobs = 600;
 constexpr int kFewestRmsInstants = 2, kMostRmsInstants = 512, kMostRmsWinds = 16, kFewestRmsPixels = 16;
 
@@ -28,17 +29,17 @@ int rms_instants(const BlobsSpec& spec, const BlobCloud& cloud) {
         std::clamp<double>(std::ceil(kRmsBlobs / cloud.most()), kFewestRmsInstants, kMostRmsInstants));
 }
 
-/// So many are never all away at once, and so many pixels give their rms roughly.
+/// A cloud of more blobs than kManyBlobs always has some of them in it. A rough rms then needs only kRoughRays pixels.
 constexpr double kManyBlobs = 64;
 constexpr int kRoughRays = 64;
-/// How far from its middle a blob moves anything to speak of [σ], and more blobs than this leave no pixel still.
+/// A blob moves pixels up to about kRmsReach from its middle [σ]. More than kDenseBlobs blobs move almost every pixel.
 constexpr double kRmsReach = 3;
 constexpr std::size_t kDenseBlobs = 4096;
-/// Pairs of pixels among blobs.
+/// Number of pairs of pixels among blobs that the focusing is estimated from.
 constexpr std::size_t kBlobPairs = 96;
 
-/// Where pixels are drawn from that blobs may move: half of them from the whole picture, half from around a blob that
-/// is in it.
+/// Draws pixels that blobs may move: half of them from the whole picture, half from the surroundings of a blob in the
+/// picture.
 class BlobPixels {
   public:
     BlobPixels(const std::vector<SeenBlob>& blobs, const Camera& camera, const PixelWindow& picture)
@@ -59,7 +60,7 @@ class BlobPixels {
             if (x1 > x0 && y1 > y0) around_.push_back({x0, y0, x1 - x0, y1 - y0});
         }
     }
-    /// Pixel i, and what one drawn evenly from the picture would count in its place.
+    /// A drawn pixel. Its weight is the density of an even draw from the picture, divided by that of this draw.
     struct Drawn {
         int x, y;
         double weight;
@@ -90,7 +91,7 @@ class BlobPixels {
     std::vector<PixelWindow> around_;
 };
 
-/// A frame of blobs: grids are made tile by tile, of the blobs that each tile sees.
+/// Blobs at one frame. Grids are made tile by tile from the blobs that each tile sees.
 class Instant final : public BendInstant {
   public:
     Instant(SeenBlobs seen, const FrameView& frame)
@@ -138,7 +139,7 @@ std::string BlobsBend::why_unseen(const ShotContext& shot, const BlobsMedium& bl
     double strongest = 0;
     for (const BlobHome& home : homes) strongest = std::max(strongest, std::abs(home.largest.n));
     if (strongest == 0) return "no blob differs from the ambient temperature";
-    // wherever they are: as if every blob were at the camera
+    // An upper bound wherever the blobs are: every blob counts as if it were at the camera.
     const double bound =
         largest_blob_shift({{}, 0, strongest}, shot.strength, shot.reference, 0, deepest) * blobs.cloud().most();
     if (bound == 0 || (!shot.camera_moves() && bound <= negligible))

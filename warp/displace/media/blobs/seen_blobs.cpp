@@ -12,15 +12,15 @@
 namespace eikonal {
 namespace {
 
-/// b/σ beyond which even e^{-b²/σ²} is nothing in single precision.
+/// b/σ beyond which e^{-b²/σ²} is zero in single precision.
 constexpr double kLargestReach = 9;
 constexpr double kWholePass = 3.5449077018110318;  // 2√π
 constexpr double kSteepest = 0.42888194248035344;  // max t e^{-t²}, at t = 1/√2
 constexpr int kLastPixel = 1 << 29;
-/// Spacings of nodes that blobs are grouped by [px].
+/// The node spacings by which blobs are grouped [px].
 constexpr std::array<int, 6> kSpacings{1, 2, 3, 4, 6, kWidestSpacing};
 
-/// t beyond which t e^{-t²} < level, 0 < level < kSteepest: fixed-point iteration of t = √ln(t/level).
+/// t beyond which t e^{-t²} < level, for 0 < level < kSteepest. Found by the fixed-point iteration t = √ln(t/level).
 double tail_reach(double level) {
     double t = 1;
     for (int i = 0; i < 12; ++i) {
@@ -35,8 +35,8 @@ int pixel_floor(double x) {
     return static_cast<int>(std::floor(std::clamp(x, -double{kLastPixel}, double{kLastPixel})));
 }
 
-/// Extreme slopes of lines from the origin of the plane (across, forward) tangent to a circle of radius r that does not
-/// hold it and lies ahead (forward > r).
+/// The smallest and largest slope of lines from the origin of the plane (across, forward) that touch a circle of radius
+/// r. The circle does not hold the origin and lies ahead of it (forward > r).
 struct Slopes {
     double least, most;
 };
@@ -53,7 +53,7 @@ double largest_blob_shift(const Blob& blob, double strength, const Camera& camer
     const double vertical = std::max(1.0, camera.pixel_aspect);
     if (camera.projection == Projection::Orthographic)
         return camera.f_px * vertical * angle * std::max(0.0, farthest - forward + blob.sigma);
-    // a slanted ray's bend shows by 1 + s², s the largest slope in the picture
+    // The bend of a slanted ray shows 1 + s² times as large. s is the largest slope in the picture.
     const double sx = camera.center.x / camera.f_px, sy = camera.center.y / (camera.f_px * camera.pixel_aspect);
     const double left = std::clamp(1 - (forward - blob.sigma) / farthest, 0.0, 1.0);
     return camera.f_px * vertical * (1 + sx * sx + sy * sy) * angle * left;
@@ -61,8 +61,8 @@ double largest_blob_shift(const Blob& blob, double strength, const Camera& camer
 
 namespace {
 
-/// A blob anywhere within `astray` of its centre, as the camera sees it; nothing if no displacement of at least `each`
-/// px comes of it.
+/// A blob as the camera sees it, anywhere within `astray` of its centre [m]. Nothing if it displaces no pixel by `each`
+/// [px] or more.
 std::optional<SeenBlob> see(const Blob& blob, double astray, double strength, const Camera& camera, double farthest,
                             double gain, double each) {
     const bool perspective = camera.projection == Projection::Perspective;
@@ -97,8 +97,8 @@ std::optional<SeenBlob> see(const Blob& blob, double astray, double strength, co
     return s;
 }
 
-/// Whether a blob's disc holds pixels of a tile: by its rectangle and, for one beside the camera, which has none, by
-/// the planes of the tile's pyramid.
+/// Whether a blob's disc holds pixels of a tile. The disc's rectangle decides. A blob beside the camera has none; the
+/// planes of the tile's pyramid then decide.
 bool meets(const SeenBlob& b, const Camera& camera, const PixelWindow& tile) {
     if (b.disc.x0 >= tile.x0 + tile.width || b.disc.x0 + b.disc.width <= tile.x0 ||
         b.disc.y0 >= tile.y0 + tile.height || b.disc.y0 + b.disc.height <= tile.y0)
@@ -134,7 +134,7 @@ bool may_be_seen(const std::vector<BlobHome>& homes, double strength, const Came
 
 namespace {
 
-/// kMostBlobLayers of them at most: nearest, farthest, and as many as are left evenly over the depths where blobs are.
+/// At most kMostBlobLayers depths: nearest, farthest, and the others spread evenly over the depths where blobs are.
 std::vector<double> spread_layers(const std::vector<const SeenBlob*>& blobs, double nearest, double farthest) {
     struct Stretch {
         double begin, end;
@@ -151,7 +151,7 @@ std::vector<double> spread_layers(const std::vector<const SeenBlob*>& blobs, dou
         else
             stretches.push_back(s);
     }
-    while (stretches.size() > kMostBlobLayers / 8) {  // join the two with the smallest gap
+    while (stretches.size() > kMostBlobLayers / 8) {  // join the two stretches with the smallest gap
         std::size_t least = 1;
         for (std::size_t i = 2; i < stretches.size(); ++i)
             if (stretches[i].begin - stretches[i - 1].end < stretches[least].begin - stretches[least - 1].end)
@@ -172,7 +172,7 @@ std::vector<double> spread_layers(const std::vector<const SeenBlob*>& blobs, dou
     return depths;
 }
 
-/// Depths at which the blobs of a group are worked out.
+/// Depths at which the blobs of a group are computed [m].
 std::vector<double> blob_layers(const std::vector<const SeenBlob*>& blobs, double nearest, double farthest) {
     if (!(farthest > nearest)) return {nearest};
     const auto spaced = [&](double apart) {
@@ -183,7 +183,7 @@ std::vector<double> blob_layers(const std::vector<const SeenBlob*>& blobs, doubl
             for (const SeenBlob* b : blobs) {
                 const double begin = b->forward - b->reach, end = b->forward + b->reach;
                 if (end <= z) continue;
-                // up to where the blob ends, or begins
+                // The next depth is at most where the blob begins or ends.
                 step = std::min(step, begin > z ? begin - z : std::min(apart * b->sigma, end - z + 1e-3 * b->sigma));
             }
             z = std::min(farthest, z + std::max(step, 1e-6 * z));
@@ -215,7 +215,7 @@ std::vector<DisplacementGrid> SeenBlobs::grids(const PixelWindow& tile, const Pi
                                                double farthest) const {
     std::vector<DisplacementGrid> result;
     for (const int spacing : kSpacings) {
-        // interpolation reads nodes beyond the tile
+        // Interpolation reads nodes beyond the tile.
         const int margin = 3 * spacing;
         const PixelWindow around{tile.x0 - margin, tile.y0 - margin, tile.width + 2 * margin, tile.height + 2 * margin};
         std::vector<const SeenBlob*> group;

@@ -10,7 +10,7 @@
 namespace eikonal {
 namespace {
 
-/// A step in gradient noise is half an inner scale, and at most this part of the finest octave's cell.
+/// A step is half an inner scale long, but at most this part of the finest octave's cell.
 constexpr double kPartOfCell = 0.75;
 
 class Instant final : public LaidOutInstant {

@@ -8,7 +8,7 @@ namespace eikonal {
 
 class GradientNoiseBend final : public MediumBend {
   public:
-    /// UserError: rays of too many steps.
+    /// UserError: rays that need too many steps.
     GradientNoiseBend(const ShotContext& shot, std::size_t medium, std::shared_ptr<const GradientNoiseMedium> noise);
 
     std::unique_ptr<const BendInstant> at(const FrameView& frame) const override;

@@ -14,18 +14,19 @@
 namespace eikonal {
 namespace {
 
-/// Spline error of `table` and `tables`, relative to the rms, and the nearest object, in parts of `far`, that padding
-/// is for.
+/// kTableSplineError: allowed spline error of `table` and `tables`, relative to the rms. kNearestPadded: the nearest
+/// object that the padding is chosen for, as a part of `far`.
 constexpr double kTableSplineError = 1e-2, kNearestPadded = 0.05;
-/// Spline error of the rays that judge tables, relative to the rms, in parts of √v, v the focusing variance: about half
-/// of the second order that they are there to find.
+/// Allowed spline error of the rays that judge tables: kJudgedSplineError √v, relative to the rms, where v is the
+/// focusing variance. This is about half of the second order, which these rays have to find.
 constexpr double kJudgedSplineError = 0.125;
-/// A lattice axis is the view's if they differ by less (1 - cosine).
+/// A lattice axis counts as the view's axis if 1 - cosine of the angle between them is less than this.
 constexpr double kAligned = 1e-9;
-/// table and tables take rays for parallel to a lattice axis: refused beyond 30 degrees from it.
+/// table and tables treat rays as parallel to a lattice axis. They are refused if the view is more than 30 degrees from
+/// it.
 constexpr double kLeastAlignment = 0.866;
-/// The finest spline of a warp, and its nodes at most: of the scene alone, so that every machine makes the same
-/// picture.
+/// The finest spline of a warp, and its largest number of nodes. They do not depend on the machine's memory, so that
+/// every machine makes the same picture.
 constexpr int kMostPadding = 4;
 constexpr double kMostNodes = 256.0 * 256 * 256;
 
@@ -33,7 +34,7 @@ SplineChoice warp_spline(const LatticeField& field, double slope_error) {
     return choose_spline(field, {.slope = slope_error, .most_padding = kMostPadding, .most_nodes = kMostNodes});
 }
 
-/// A frame by first-order rays: map and bent rays share the spline.
+/// A lattice at one frame, by first-order rays. Maps and bent rays share the spline.
 class RaysInstant final : public LaidOutInstant {
   public:
     RaysInstant(std::shared_ptr<const LatticeMedium> medium, std::shared_ptr<const LatticeInstant> spline,
@@ -59,7 +60,7 @@ class RaysInstant final : public LaidOutInstant {
     FirstOrderRays rays_;
 };
 
-/// A frame by tables; the rays that judge it get a spline of their own.
+/// A lattice at one frame, by tables. The rays that judge the tables get a spline of their own.
 class TablesInstant final : public LaidOutInstant {
   public:
     TablesInstant(std::shared_ptr<const LatticeMedium> medium, DisplacementTables tables, const Padding& ray_padding,
@@ -88,7 +89,7 @@ class TablesInstant final : public LaidOutInstant {
     double t_;  ///< [s]
 };
 
-/// The model of a lattice, and why.
+/// The model of a lattice, and the reason for it.
 struct ChosenModel {
     Model model;
     std::string why;
@@ -165,7 +166,7 @@ void LatticeBend::choose_ray_spline() {
         told_.first_notes.push_back(
             fmt::format("{}: too large a lattice for a finer spline, whose force is off by {:.2g} of its rms", name(),
                         spline.error.slope));
-    // an aperture of a cell and more averages it out
+    // An aperture of at least a cell averages this error out.
     if (shot_.scene.optics.aperture * padding_ < std::min({cell_.x, cell_.y, cell_.z})) bend_error_ = spline.error.bend;
 }
 
@@ -186,7 +187,7 @@ std::unique_ptr<const BendInstant> LatticeBend::tables_at(const FrameView& frame
         return exact_instant(field, frame.t, rays, depths, interpolation, shot_.strength, padding_);
     };
     Padding ray_padding{ray_padding_, ray_padding_, ray_padding_};
-    // Along an axis that every ray runs along, the spline's error averages out over the way.
+    // All rays run along one axis. The spline's error along it averages out over the path.
     if (model() == Model::Spectral) ray_padding[static_cast<std::size_t>(nearest_axis(shot_.reference, 0).axis)] = 1;
     const auto made = [&](DisplacementTables tables) {
         return std::make_unique<const TablesInstant>(lattice_, std::move(tables), ray_padding, cell_, frame);
@@ -222,7 +223,7 @@ double LatticeBend::focusing_variance(double D) const {
 }
 
 double LatticeBend::corner_gain() const {
-    return stepped() ? MediumBend::corner_gain() : 1;  // tables take rays for parallel
+    return stepped() ? MediumBend::corner_gain() : 1;  // tables treat all rays as parallel
 }
 
 double LatticeBend::instant_bytes() const {

@@ -10,7 +10,7 @@ namespace eikonal {
 
 class LatticeBend final : public MediumBend {
   public:
-    /// UserError: a model that does not suit the view, rays of too many steps.
+    /// UserError: a model that does not suit the view, or rays that need too many steps.
     LatticeBend(const ShotContext& shot, std::size_t medium, std::shared_ptr<const LatticeMedium> lattice);
 
     std::unique_ptr<const BendInstant> at(const FrameView& frame) const override;
@@ -28,11 +28,11 @@ class LatticeBend final : public MediumBend {
 
     std::shared_ptr<const LatticeMedium> lattice_;
     PathRays rays_;        ///< along the lattice axis nearest to the reference view
-    dvec3 cell_;           ///< [m]
-    double constant_ = 0;  ///< c of `table`
-    int padding_ = 1;      ///< of the splines of the model
-    int ray_padding_ = 1;  ///< of the spline that bent rays go through
-    /// SplineError::bend, where map and rays go through the same spline.
+    dvec3 cell_;           ///< cell of the lattice [m]
+    double constant_ = 0;  ///< the constant c of `table`
+    int padding_ = 1;      ///< padding of the splines that the model reads
+    int ray_padding_ = 1;  ///< padding of the spline that bent rays read
+    /// SplineError::bend, if the map and the rays that judge it read the same spline; else 0.
     double bend_error_ = 0;
 };
 

@@ -10,7 +10,7 @@
 namespace eikonal {
 namespace {
 
-/// Thin screens that move what they should by less than this part of it are worth a note.
+/// A note is given if thin screens have less than this part of the displacement that they should have.
 constexpr double kNoticedPart = 0.97;
 
 class Instant final : public LaidOutInstant {
