@@ -23,7 +23,7 @@ std::vector<double> choice_frames(const Scene& scene, const DisplacerSettings& s
     return {first, 0.5 * (first + last), last};
 }
 
-/// What a camera sees at a distance over the scene's heated surfaces: these themselves where they are nearer.
+/// Depth of a picture that shows objects at `distance` [m], and heated surfaces where these are nearer.
 DepthPlane ground_before(const Camera& camera, const Scene& scene, const PixelWindow& window, double distance) {
     std::vector<float> metres(window.area(), static_cast<float>(distance));
     for (const MediumSpec& medium : scene.media) {
@@ -40,12 +40,12 @@ DepthPlane ground_before(const Camera& camera, const Scene& scene, const PixelWi
     return {window, std::move(metres)};
 }
 
-/// Depths that stand for a shot's: planes where there are any, else distances [m].
+/// Depths that stand for those of a shot: a depth plane if the frames share one, else distances [m].
 struct ChoiceDepths {
     const DepthPlane* plane = nullptr;
     DepthMeeting meeting = DepthMeeting::March;
     std::vector<double> distances;
-    bool over_ground = false;  ///< before the distances
+    bool over_ground = false;  ///< heated surfaces are put in front of the distances
 
     ChoiceDepths(const Scene& scene, double far, const ShotDepth& depth) : meeting(depth.meeting), distances{far} {
         if (!depth.shared) {
@@ -59,7 +59,7 @@ struct ChoiceDepths {
     }
 };
 
-/// The largest p95 of the frames and distances.
+/// The largest 95th percentile of the error over the frames and distances [px].
 double sampled_p95(const Displacer& displacer, const Scene& scene, const DisplacerSettings& settings,
                    const ChoiceDepths& depths, double gain) {
     double worst = 0;
@@ -156,7 +156,7 @@ std::optional<Model> sufficient_model(const Scene& scene, DisplacerSettings sett
             else if (std::isfinite(sampled) && p95 * sampled <= tolerance * own)
                 return other;
         } catch (const UserError&) {
-            continue;  // does not apply
+            continue;  // the model does not apply
         }
     }
     return {};

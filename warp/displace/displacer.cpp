@@ -16,26 +16,30 @@
 namespace eikonal {
 namespace {
 
-/// Largest tile in pixels; bounds the memory of a thread. Tiles are anchored at (0, 0): a pixel's bits depend on its
-/// tile, which is worked out whole, and not on the window asked for.
+/// Largest tile [px]. It bounds the memory of a thread. Tiles are anchored at pixel (0, 0), and each is computed as a
+/// whole. The bits of a pixel therefore depend on its tile and not on the window asked for.
 constexpr int kTileWidth = 512, kTileHeight = 64;
-/// Tiles of smaller pictures are no larger than these, to a multiple of this: rays far beyond them may be very oblique.
+/// Tiles are no larger than the picture rounded up to a multiple of this [px]. Rays far outside a small picture may be
+/// very oblique.
 constexpr int kTileUnit = 16;
 
 int tile_side(int picture, int largest) {
     return std::min(largest, (picture + kTileUnit - 1) / kTileUnit * kTileUnit);
 }
-/// Tiles of pictures with a mirage and other media are as long as the picture the way that the mirage moves, up to
-/// this, and as wide: a ray that it bends passes the air of far pixels.
+/// Largest tiles of pictures that show a mirage and other media [px]. A ray that a mirage bends passes through the air
+/// of distant pixels along the direction in which the mirage moves pixels. Tiles are long in that direction, up to
+/// kAirTileLength, and kAirTileWidth wide across it.
 constexpr int kAirTileLength = 2048, kAirTileWidth = 128;
-/// How far beyond a tile, in pictures, the air is looked up; farther out it is that of the border.
+/// How far beyond a tile the air is known for rays that a mirage bends, in picture sizes. Farther out the air of the
+/// border is used.
 constexpr double kAirAround = 0.5;
-/// Where the air of a mirage's rays begins to be told apart, as a part of the farthest depth: objects need no depths
-/// before them, but rays turn there.
+/// Nearest depth at which a mirage's rays see the other media, as a part of the farthest depth. The nearest object may
+/// be farther, but the rays turn before they reach it.
 constexpr double kNearestAir = 1.0 / 64;
-/// Between nodes and depths the interpolant may exceed them by this factor.
+/// The interpolant between nodes and depths may exceed their values by this factor.
 constexpr double kOvershoot = 1.6;
-/// Least depth that grids are made for [m]: nearer ones move as at this one, which is not at all.
+/// Least depth that grids are made for [m]. Nearer objects are displaced as at this depth, where there is no
+/// displacement.
 constexpr double kLeastDepth = 1e-12;
 
 }  // namespace
@@ -89,7 +93,7 @@ PixelWindow Displacer::Instant::State::air_around(const Mirage& mirage, const Pi
     return {x0, y0, x1 - x0, y1 - y0};
 }
 
-/// The filled grids of every medium on a tile.
+/// The filled grids of all media on a tile.
 std::vector<DisplacementGrid> Displacer::Instant::State::tile_grids(const PixelWindow& tile,
                                                                     const PixelWindow& cover) const {
     std::vector<DisplacementGrid> grids;
@@ -134,7 +138,7 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
         const PixelWindow tile{(first_column + t % columns) * side_x, (first_row + t / columns) * side_y, side_x,
                                side_y};
         const PixelWindow part = intersection(tile, window);
-        // Nodes on lines depend on where the line begins, and the march's reach on the whole tile.
+        // Nodes on lines depend on where the line begins. The reach of the march depends on the whole tile.
         const PixelWindow asked = march ? tile : PixelWindow{tile.x0, part.y0, tile.width, part.height};
         const std::span<const Mirage> mirages = state_->mirages_on(tile);
         const Mirage* bending = state_->air_bender(tile);

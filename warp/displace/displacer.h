@@ -1,13 +1,15 @@
-/// Displacement maps of a scene: media × camera × depth → (dx, dy) in pixels, for any frame, at random.
+/// Displacement maps of a scene. Media, a camera and a depth give the displacement (dx, dy) of every pixel, of any
+/// frame and in any order.
 ///
 ///     out(p) = in(p + d(p)),   d = f_px x1⊥(D)/D        (PHYSICS.md#first-order)
 ///
-/// A Displacer is made once a shot and is immutable; at(F) prepares an instant (spectra summed over κ, transformed);
-/// Instant::map fills a window of pixels. Frame F depends on the scene, its settings and F alone: not on other frames,
-/// threads, or the window asked for.
+/// A Displacer is made once a shot and is immutable. at(F) prepares the media at frame F; it sums the spectra over κ
+/// and transforms them. Instant::map fills a window of pixels. Frame F depends on the scene, its settings and F alone,
+/// and not on other frames, on threads or on the window asked for.
 ///
-/// Every medium is handled by the model that suits it (warp/displace/shot_media.h), and their displacements add. Gain
-/// multiplies them, but for mirages: those are geometry, and [optics] exaggeration makes more of them.
+/// Every medium is computed by the model that suits it (warp/displace/shot_media.h), and the displacements of all media
+/// are added. The gain multiplies the displacements of all media except surfaces. A mirage follows from the geometry of
+/// its rays; [optics] exaggeration strengthens it.
 #pragma once
 
 #include <memory>
@@ -25,24 +27,24 @@ namespace eikonal {
 
 class Displacer {
   public:
-    /// UserError: media or models that do not apply, lattices that do not fit into memory, a broken camera path.
+    /// UserError: media or models that do not apply, lattices that do not fit into memory, a faulty camera path.
     Displacer(const Scene& scene, const DisplacerSettings& settings);
     ~Displacer();
     Displacer(Displacer&&) noexcept;
 
-    /// One frame's media, ready to be mapped. Thread-safe; must not outlive the Displacer.
+    /// All media at one frame, ready to be mapped. Thread-safe. It must not outlive the Displacer.
     class Instant {
       public:
-        /// Displacement of every pixel of `window` into `uv`: window.area() interleaved pairs. Tiles in parallel.
-        /// Finite for every finite depth > 0. FrameError once the settings' `stop` is requested, and if a pixel would
-        /// move by more than kLargestShift.
+        /// Writes the displacement of every pixel of `window` into `uv`, as window.area() interleaved pairs. Tiles are
+        /// computed in parallel. The values are finite for every finite depth > 0. FrameError once the settings' `stop`
+        /// is requested, and if a pixel would move by more than kLargestShift.
         void map(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting, float* uv) const;
 
-        /// The error of a map that map() made with the same arguments. The settings must ask for it (sample_errors).
+        /// The error of a map that map() made with the same arguments. settings.sample_errors must be true.
         /// FrameError as map().
         StatedError stated_error(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting,
                                  const float* uv) const;
-        /// The same, `samples` errors one by one [px].
+        /// The errors of `samples` single pixels of the map [px].
         std::vector<double> sampled_errors(const PixelWindow& window, const DepthSource& depth, DepthMeeting meeting,
                                            const float* uv, int samples) const;
 
@@ -57,35 +59,36 @@ class Displacer {
         std::unique_ptr<State> state_;
     };
 
-    /// frame: any real number (shutter samples lie between frames). `nearest`, `farthest`: axial depths that map() will
-    /// be asked for.
+    /// The media at a frame. frame: any real number; shutter samples lie between whole frames. `nearest`, `farthest`:
+    /// the range of axial depths that map() will be asked for [m].
     Instant at(double frame, double nearest, double farthest, double gain = 1) const;
-    /// Bytes of one instant, about, and at most needed for a while.
+    /// Approximate size of one instant [bytes]. Computing it may take as much again for a while.
     std::uint64_t instant_bytes() const;
 
-    /// Expected root mean square of |d| in pixels, over pixels and time, for an object at axial distance D at the
-    /// strength that the media have before any falloff. Gradient noise and blobs: estimated from kRmsRays rays.
+    /// Expected root mean square of |d| [px] over pixels and time, for an object at axial distance D [m]. The media
+    /// have their strength before any falloff. For gradient noise and blobs it is estimated from kRmsRays rays.
     double expected_rms(double D) const;
 
-    /// Expected variance of the focusing of light from distance D (PHYSICS.md#focusing), ∂d_x/∂x of the map, at the
-    /// strength that the media have before any falloff: near 1 rays fold. Gradient noise and blobs: estimated from
-    /// pairs of pixels, those of blobs where blobs are. Mirages, which fold
-    /// by nature, are not counted.
+    /// Expected variance of ∂d_x/∂x of the map for objects at axial distance D [m], which measures the focusing of
+    /// light (PHYSICS.md#focusing). Near 1 rays fold. The media have their strength before any falloff. For gradient
+    /// noise and blobs it is estimated from pairs of pixels; for blobs these lie where the blobs are. Mirages are not
+    /// counted, because their rays always fold.
     double focusing_variance(double D) const;
 
-    /// For --verbose: one line a medium: its model and why, its sizes; and what is left out.
+    /// Notes for --verbose: one line for each medium with its model, the reason for it and its sizes, or why the medium
+    /// is left out.
     const std::vector<std::string>& notes() const;
-    /// One line each: what the user should know of (folding rays, paths beyond a lattice period).
+    /// What the user should know, one line each: rays that fold, paths longer than a lattice period.
     const std::vector<std::string>& warnings() const;
-    /// The same of the air itself, which matters only where displacement is shown at all.
+    /// Warnings about the air itself, one line each. They matter only if the displacement is shown.
     const std::vector<std::string>& air_warnings() const;
-    /// One line each on what does not hold for objects as far as `farthest` [m], beyond the settings' far; none if it
-    /// is not beyond.
+    /// What does not hold for objects as far as `farthest` [m], one line each. Empty if `farthest` is not beyond the
+    /// settings' far.
     std::vector<std::string> beyond_far(double farthest) const;
     /// Names of the models in use, in the order of the media.
     std::vector<std::string> models() const;
 
-    /// Whether surfaces bend rays, exactly and by no model.
+    /// Whether the scene has surfaces that bend rays. These are computed exactly and take no model.
     bool mirages() const;
 
     Camera camera(double frame) const;

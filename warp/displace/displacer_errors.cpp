@@ -14,11 +14,11 @@
 namespace eikonal {
 namespace {
 
-/// Halvings of a depth, down to a float's precision.
+/// How often an interval of depths is halved. The result is as exact as a float.
 constexpr int kMeetingHalvings = 30;
 
-/// What the interpolation in lattices that a ray and its judge share may move the pixel by, drawn from what is expected
-/// [px].
+/// A random shift of the pixel [px] with the expected variance of the error of the lattices' splines. The map and the
+/// ray that judges it read a lattice through the same spline, so their difference does not show this error.
 dvec2 drawn_interpolation(const AirInstant& field, const Camera& camera, const SamplePixel& pixel, double depth) {
     const StraightRay ray = straight_ray(camera, pixel.x + 0.5, pixel.y + 0.5);
     const double shift = field.interpolation(ray.at(0), ray.at(depth)).shift;
@@ -30,7 +30,7 @@ dvec2 drawn_interpolation(const AirInstant& field, const Camera& camera, const S
     return std::sqrt(0.5) * shift * scale * gaussian;
 }
 
-/// Whether all are numbers up to kLargestShift.
+/// Whether all n values are numbers of at most kLargestShift in magnitude.
 EIKONAL_CLONES bool within_largest(const float* v, std::size_t n) {
     constexpr auto largest = static_cast<float>(kLargestShift);
     int beyond = 0;
@@ -78,10 +78,10 @@ bool Displacer::Instant::State::falls_through(GridRows& row, const DepthPlane& d
     const Shift d = row.at(p.x, end);
     const double x = std::floor(p.x + 0.5 + d.x), y = std::floor(p.y + 0.5 + d.y);
     const PixelWindow& w = depth.window();
-    if (!(x >= w.x0 && x < w.x0 + w.width && y >= w.y0 && y < w.y0 + w.height)) return false;  // not known
+    if (!(x >= w.x0 && x < w.x0 + w.width && y >= w.y0 && y < w.y0 + w.height)) return false;  // depth unknown there
     const double z = depth.at(static_cast<int>(x), static_cast<int>(y));
     const auto below = [&](const ShotMedia::Surface& surface) {
-        double highest = -std::numeric_limits<double>::infinity();  // of what the pixel may show
+        double highest = -std::numeric_limits<double>::infinity();  // height of the points that the pixel may show
         for (const dvec2 corner : {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1), dvec2(1, 1)})
             highest = std::max(highest,
                                surface.medium->index().height(straight_ray(camera, x + corner.x, y + corner.y).at(z)));

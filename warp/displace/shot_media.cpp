@@ -18,12 +18,13 @@
 namespace eikonal {
 namespace {
 
-/// How much more than at `far` turbulence may move what is deeper: as 100 times the way does.
+/// Objects deeper than `far` may be displaced by up to this factor more than objects at `far`. A path 100 times as long
+/// gives this factor.
 constexpr double kDeeper = 10;
-/// A Gaussian field's largest value over a shot, in parts of its rms.
+/// Largest value of a Gaussian field over a shot, divided by its rms.
 constexpr double kLargestOverRms = 6;
 
-/// The kinds of medium that have a quicker way in the warp than AnyMediumBend: the one list.
+/// The only list of the kinds of medium that have a quicker way in the warp than AnyMediumBend.
 std::unique_ptr<const MediumBend> make_medium_bend(const ShotContext& shot, std::size_t i,
                                                    const std::shared_ptr<const Medium>& medium) {
     if (auto screens = std::dynamic_pointer_cast<const ScreensMedium>(medium))
@@ -37,7 +38,7 @@ std::unique_ptr<const MediumBend> make_medium_bend(const ShotContext& shot, std:
     return std::make_unique<const AnyMediumBend>(shot, i, medium);
 }
 
-/// Why a medium that bends light moves no pixel that is seen; empty if it may.
+/// Why a medium that bends light moves no visible pixel; empty if it may move one.
 std::string why_unseen(const ShotContext& shot, const Medium& medium) {
     if (const auto* blobs = dynamic_cast<const BlobsMedium*>(&medium)) return BlobsBend::why_unseen(shot, *blobs);
     return {};
@@ -99,10 +100,10 @@ void ShotMedia::keep(std::unique_ptr<const MediumBend> bend) {
                 "medium.{}: it would move pixels by {:.2g} px rms, and a map holds at most {:g} px; lower its cn2 or "
                 "strength, optics.exaggeration, or `far`",
                 bend->medium(), rms, kLargestShift));
-        // the rays of a wide view's corners cross more air, and show a bend larger
+        // Rays in the corners of a wide view cross more air, and their bend shows larger.
         const double more = bend->corner_gain() * (shot_.deepest() > settings.far ? kDeeper : 1);
         const auto negligible = [&] { return kLargestOverRms * rms * more < settings.negligible; };
-        // a camera that moves may zoom in later
+        // A moving camera may zoom in later.
         if (!shot_.camera_moves() && negligible()) rms = std::sqrt(bend->expected_variance(settings.far, false));
         if (!shot_.camera_moves() && negligible()) {
             notes_.push_back(fmt::format("medium.{}: left out, it moves no pixel by more than {:g} px ({:.2g} px rms)",
@@ -183,7 +184,7 @@ std::vector<std::unique_ptr<const BendInstant>> ShotMedia::at(const FrameView& f
 
 namespace {
 
-/// Depths between the two, sorted, without repetition.
+/// The nearest and farthest depth and all depths between them, sorted, without repetition.
 std::vector<double> joint_depths(std::vector<double> depths, double nearest, double farthest) {
     std::erase_if(depths, [&](double z) { return z <= nearest || z >= farthest; });
     depths.push_back(nearest);
@@ -198,7 +199,7 @@ std::vector<double> joint_depths(std::vector<double> depths, double nearest, dou
 BentRays ShotMedia::bent_rays(const std::vector<std::unique_ptr<const BendInstant>>& own, const FrameView& frame,
                               bool judge) const {
     const DisplacerSettings& settings = shot_.settings;
-    // of media that choose steps themselves when they are alone: their step then goes into the search for them
+    // If all media choose their own steps, the factor on the step is given to them.
     const bool own_steps = std::all_of(own.begin(), own.end(), [](const auto& i) { return i->chooses_own_steps(); });
     double cell = std::numeric_limits<double>::infinity();
     double step = second_order() && judge ? kFineStep : kStep;

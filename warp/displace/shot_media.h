@@ -1,7 +1,7 @@
-/// All media of a shot in the warp: the air built once, each medium with the model that suits it, surfaces apart.
+/// All media of a shot in the warp. The air is built once, and each medium gets the model that suits it.
 ///
-/// Surfaces (mirages) bend rays exactly and take no model; every other medium has a MediumBend. Media that move no
-/// pixel are left out, with a note.
+/// Surfaces (mirages) bend rays exactly and take no model; they are held apart. Every other medium has a MediumBend.
+/// Media that move no pixel are left out, with a note.
 #pragma once
 
 #include <memory>
@@ -20,36 +20,36 @@ class ShotMedia {
   public:
     /// UserError: media or models that do not apply, a medium too strong for any map, a camera below a surface.
     ShotMedia(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path);
-    ShotMedia(const ShotMedia&) = delete;  // the media refer to the context
+    ShotMedia(const ShotMedia&) = delete;  // the media refer to shot_
 
     const ShotContext& context() const { return shot_; }
     const std::vector<std::unique_ptr<const MediumBend>>& bends() const { return bends_; }
-    /// Heated or cooled surfaces, and their index in Scene::media.
+    /// A heated or cooled surface, and its index in Scene::media.
     struct Surface {
         std::size_t index;
         std::shared_ptr<const SurfaceMedium> medium;
     };
     const std::vector<Surface>& surfaces() const { return surfaces_; }
-    /// Whether rays go through all media together (second-order).
+    /// Whether each ray goes through the sum of all media (model second-order).
     bool second_order() const { return shot_.second_order(); }
 
-    /// One frame of every bend, in their order.
+    /// Every medium at one frame, in the order of bends().
     std::vector<std::unique_ptr<const BendInstant>> at(const FrameView& frame) const;
-    /// Rays through the sum of the media: those of second-order or, if `judge`, through the surfaces too, and in finer
-    /// steps than second-order's own if that is the model: what any model is judged by. own: at(frame). The gain
-    /// multiplies every n - n_ambient but the surfaces'.
+    /// Rays through the sum of the media, as second-order follows them. If `judge`, they are the rays that any map is
+    /// judged by. Those go through the surfaces too, and their steps are finer than those of second-order if that is
+    /// the model. own: the result of at(frame). The gain multiplies n - n_ambient of every medium except surfaces.
     BentRays bent_rays(const std::vector<std::unique_ptr<const BendInstant>>& own, const FrameView& frame,
                        bool judge) const;
-    /// Mirages as a frame's camera sees them. UserError: the camera is not above a surface.
+    /// The mirages as the camera of a frame sees them. UserError: the camera is not above a surface.
     std::vector<Mirage> mirages(const Camera& camera, double farthest) const;
 
-    /// Bytes of one instant of everything, about.
+    /// Approximate size of one instant of all media [bytes].
     std::uint64_t instant_bytes() const;
-    /// Displacer's.
+    /// As Displacer::beyond_far.
     std::vector<std::string> beyond_far(double farthest) const;
     const std::vector<std::string>& notes() const { return notes_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
-    /// What the media themselves warn of, whether or not they are seen.
+    /// Warnings of the media themselves, whether or not they are seen.
     const std::vector<std::string>& air_warnings() const { return air_warnings_; }
 
   private:
@@ -64,7 +64,7 @@ class ShotMedia {
     std::vector<std::unique_ptr<const MediumBend>> bends_;
     std::vector<Surface> surfaces_;
     std::vector<std::string> surface_names_;  ///< for messages
-    std::vector<Mirage> reference_mirages_;   ///< as the reference camera sees them
+    std::vector<Mirage> reference_mirages_;   ///< the mirages as the reference camera sees them
     std::vector<std::string> notes_, warnings_, air_warnings_;
 };
 

@@ -13,15 +13,15 @@
 namespace eikonal {
 namespace {
 
-/// The additive recurrence of the plastic number: points that fill the unit square evenly, however many.
+/// Steps of the additive recurrence of the plastic number. Any number of its points fill the unit square evenly.
 constexpr double kPlasticX = 0.7548776662466927, kPlasticY = 0.5698402909980532;
 
 double fraction(double x) {
     return x - std::floor(x);
 }
 
-/// Sorts pixels into classes of depth of equal size, and these in turn by ascending and descending displacement. So
-/// depth and displacement change little from one pixel to the next.
+/// Sorts pixels by depth into kDepthStrata classes of equal size. Within a class they are sorted by displacement,
+/// ascending and descending by turns. Depth and displacement then change little from one pixel to the next.
 void stratify(std::vector<SamplePixel>& pixels) {
     const auto strength = [](const SamplePixel& p) { return p.map.x * p.map.x + p.map.y * p.map.y; };
     std::stable_sort(pixels.begin(), pixels.end(),
@@ -36,13 +36,13 @@ void stratify(std::vector<SamplePixel>& pixels) {
     }
 }
 
-/// Distance from an edge up to which a pixel is beside it [px].
+/// Distance [px] within which an edge of the depth buffer makes a pixel count as beside it.
 int edge_reach(const SamplePixel& p) {
     const float most = std::max(std::abs(p.map.x), std::abs(p.map.y));
     return std::clamp(static_cast<int>(std::ceil(std::min<float>(most, kFarthestEdge))), kEdgeReach, kFarthestEdge);
 }
 
-/// Removes the pixels beside an edge, unless fewer than `least` would stay.
+/// Removes the pixels beside an edge, unless fewer than `least` would remain.
 void keep_smooth(std::vector<SamplePixel>& pixels, const DepthPlane& depth, std::size_t least) {
     int reach = 0;
     for (const SamplePixel& p : pixels) reach = std::max(reach, edge_reach(p));
