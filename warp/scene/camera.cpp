@@ -19,15 +19,16 @@ double focal_from_fov(double size, double fov_degrees) {
     return 0.5 * size / portable::tan(fov_degrees * (portable::kPi / 360));
 }
 
-/// Perspective: focal length in pixels from what the scene states; orthographic: pixels per metre.
+/// Scale of the camera as the scene states it. Perspective: focal length in pixels. Orthographic: pixels per metre.
 double scale_of(const CameraSpec& spec, int width, std::optional<double> fov) {
     if (spec.projection == Projection::Orthographic) return width / spec.width;
     if (!fov && spec.focal_length) return width * *spec.focal_length / spec.sensor_width.value_or(kDefaultSensorWidth);
     return focal_from_fov(width, fov ? *fov : spec.horizontal_fov.value_or(kDefaultHorizontalFov));
 }
 
-/// Of unit quaternions, at constant angular speed along the shorter arc; t in [0, 1]. By bisection, as half an arc
-/// needs only a normalised sum: after kHalvings the rest of the arc is straight to double precision.
+/// Interpolates unit quaternions at constant angular speed along the shorter arc; t in [0, 1]. It bisects the arc,
+/// since the middle of an arc needs only a normalised sum. After kHalvings the remaining arc is straight to double
+/// precision.
 glm::dquat slerp(glm::dquat a, glm::dquat b, double t) {
     constexpr int kHalvings = 20;
     if (glm::dot(a, b) < 0) b = -b;

@@ -18,7 +18,7 @@ constexpr std::size_t kColumns = 7, kColumnsWithFov = 8;
 /// Rotation by an angle in degrees about an axis (0 x, 1 y, 2 z).
 glm::dquat rotation(int axis, double degrees) {
     double s, c;
-    portable::sincos_turns(degrees / 720, s, c);  // of half the angle
+    portable::sincos_turns(degrees / 720, s, c);  // sine and cosine of half the angle
     return {c, axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0};
 }
 

@@ -16,16 +16,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kInstalled = "share/eikonal/presets";
-/// Folders between an installed file and the prefix: bin, lib, lib/x86_64-linux-gnu.
+/// Number of folders between an installed file and the prefix, at most: bin, lib, lib/x86_64-linux-gnu.
 constexpr int kDeepest = 2;
 
-/// The shared library that holds this code; nothing reliable in a program that links it statically.
+/// The file of the shared library that holds this code. The result is not reliable in a program that links it
+/// statically.
 fs::path own_file() {
     Dl_info info{};
     return dladdr(reinterpret_cast<const void*>(&list_presets), &info) != 0 && info.dli_fname ? info.dli_fname : "";
 }
 
-/// The presets' folder under the prefix that `file` is installed in; empty if there is none.
+/// The folder of presets under the prefix that `file` is installed in; empty if there is none.
 fs::path installed_beside(const fs::path& file) {
     std::error_code ignored;
     fs::path prefix = fs::absolute(file, ignored).parent_path();

@@ -11,7 +11,7 @@ namespace eikonal {
 
 namespace {
 
-/// Every medium draws its own numbers, even where the file gives all the same seed.
+/// Gives every medium its own random numbers, even if the file states the same seed for all.
 void mix_seeds(Scene& scene, std::uint64_t scene_seed) {
     for (std::size_t i = 0; i < scene.media.size(); ++i)
         scene.media[i].mix_seeds(RandomStream(scene_seed, "medium", i));

@@ -16,14 +16,14 @@ namespace {
 constexpr std::array<std::string_view, 8> kSections = {"camera", "time",   "optics", "plate",
                                                        "medium", "object", "light",  "background"};
 
-/// The key that the message begins with: empty if it begins with anything else.
+/// The key at the beginning of the message; empty if the message begins with anything else.
 std::string_view leading_key(std::string_view message) {
     const std::string_view key = message.substr(0, message.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_."));
     const bool known = std::find(kSections.begin(), kSections.end(), key.substr(0, key.find('.'))) != kSections.end();
     return known ? key : std::string_view();
 }
 
-/// The deepest node on the key's way.
+/// The last node on the path of the key that exists.
 const toml::node& deepest(const toml::table& root, std::string_view key) {
     const toml::node* node = &root;
     while (!key.empty()) {

@@ -1,5 +1,5 @@
-/// Where a scene states what a message is about, once it has been read: what reads scenes knows the place of what it
-/// finds wrong itself, what uses them knows keys only.
+/// Finds the place in a scene that a message is about. The scene reader knows the places of its own errors. Code that
+/// uses a scene after it has been read knows only keys; this adds the place.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace eikonal {
 
-/// A message that begins with a scene's key, "medium.0.source.1.rate = …", with the place of that key before it:
-/// "scene.toml:12: …", or "`set` medium.0.source.1.rate=…: …" where a setting has given it; of a key that is left out,
-/// the place of what it belongs to. Any other message as it is. file, settings: as read_scene was given them. Reads
-/// the file again; never throws.
+/// If the message begins with a key of the scene, "medium.0.source.1.rate = …", puts the place of that key before it:
+/// "scene.toml:12: …". If a setting has given the key, the place is "`set` medium.0.source.1.rate=…: …". If the key is
+/// left out, the place is that of the table it belongs to. Other messages are returned unchanged. file, settings: the
+/// arguments of read_scene. Reads the file again. Never throws.
 std::string with_place(std::string_view message, const std::filesystem::path& file,
                        const std::vector<std::string>& settings);
 

@@ -79,7 +79,7 @@ static Keys keys(PlateSpec& p) {
     };
 }
 
-// ---- media: the key `type` decides which others there are ----
+// ---- media: the key `type` decides which other keys there are ----
 
 static constexpr std::string_view kType = "type", kTypeMeaning = "kind of medium";
 
@@ -89,7 +89,7 @@ static std::vector<std::string_view> medium_types() {
     return types;
 }
 
-/// The key `type` of a medium whose kind is known: it can be looked at, and has nothing left to read.
+/// The key `type` of a medium whose kind is known. Its value can be shown; it does not need to be read again.
 class TypeTarget final : public KeyTarget {
   public:
     explicit TypeTarget(std::string_view type) : type_(type) {}

@@ -1,5 +1,5 @@
-/// The keys of a whole scene: the root of the one list of all keys, which the scene reader and whoever shows keys use.
-/// The keys of a medium are beside its parameters, under noise/.
+/// The keys of a whole scene. This is the root of the one list of all keys, which the scene reader uses, and all code
+/// that shows keys. The keys of a medium are beside its parameters, under noise/.
 #pragma once
 
 #include "noise/medium/key_reader.h"

@@ -20,9 +20,9 @@ namespace {
 
 constexpr std::string_view kValue = "v";  // the key under which Setting::parsed() puts a value
 
-/// One setting being applied.
+/// A setting while it is applied.
 struct Setting {
-    std::string option;  // "`set` KEY=VALUE", as messages and sources name it
+    std::string option;  // "`set` KEY=VALUE", as it appears in messages and as a source
     toml::source_region source;
 
     [[noreturn]] void fail(std::string_view what) const {
@@ -52,10 +52,10 @@ std::optional<std::size_t> index_of(std::string_view part) {
     return index;
 }
 
-/// An element of a table or array, there or not.
+/// An element of a table or array, which need not exist.
 class Slot {
   public:
-    /// above: the container's dotted key, for messages. Throws UserError if the container can have no such element.
+    /// above: the container's dotted key, for messages. UserError if the container cannot have such an element.
     Slot(const Setting& setting, toml::node& container, std::string_view part, const std::string& above)
         : source_(setting.source), table_(container.as_table()), array_(container.as_array()), key_(part) {
         if (!table_ && !array_) setting.fail(fmt::format("{} is no table and has no '{}'", above, part));
@@ -76,7 +76,7 @@ class Slot {
             array_->erase(array_->cbegin() + static_cast<std::ptrdiff_t>(index_));
     }
 
-    /// Takes the node with its source.
+    /// Puts the node there, together with its source.
     void assign(toml::node&& value) {
         if (table_) {
             table_->erase(key_);  // the old key would keep the file as its source

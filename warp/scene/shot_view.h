@@ -1,5 +1,5 @@
-/// The shot that media are built for, from its reference camera: one rule for the warp, the field's slices and the
-/// tracer.
+/// The view of a shot that media are built for, from its reference camera. The warp, the slices of a field and the
+/// tracer all use this rule.
 #pragma once
 
 #include "noise/medium/shot_frame.h"
@@ -7,7 +7,8 @@
 
 namespace eikonal {
 
-/// camera: the shot's reference camera. width, height: of its picture [px]. aperture, far [m], fps: as in ShotView.
+/// camera: the shot's reference camera. width, height: size of its picture [px]. aperture, far [m], fps: as in
+/// ShotView.
 inline ShotView shot_view(const Camera& camera, int width, int height, double aperture, double far, double fps) {
     return {camera.projection == Projection::Perspective,
             far,
@@ -18,7 +19,7 @@ inline ShotView shot_view(const Camera& camera, int width, int height, double ap
             fps};
 }
 
-/// The same with the camera's place, as media need it.
+/// The same, with the position and axes of the camera.
 inline ShotFrame shot_frame(const Camera& camera, int width, int height, double aperture, double far, double fps) {
     return {camera.position, camera.right, camera.up, camera.forward,
             shot_view(camera, width, height, aperture, far, fps)};

@@ -6,10 +6,10 @@
 
 namespace eikonal::scene_file {
 
-/// Largest file read [bytes]; what is larger is no scene or camera path but a slip of the hand.
+/// Largest file that is read [bytes]. A larger file is neither a scene nor a camera path, but named by mistake.
 inline constexpr std::size_t kLargestTextFile = std::size_t{64} << 20;
 
-/// The file's bytes. kind: "scene", "camera path", for the message. Throws UserError: missing, unreadable, too large.
+/// The file's bytes. kind: "scene" or "camera path", for the message. UserError: missing, unreadable, too large.
 std::string read_text(const std::filesystem::path& file, const char* kind);
 
 }  // namespace eikonal::scene_file

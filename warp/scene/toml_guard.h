@@ -1,4 +1,4 @@
-/// Guard in front of the TOML parser, whose recursion over the parts of dotted keys has no limit of its own.
+/// A check before the TOML parser. The parser recurses over the parts of dotted keys without a limit of its own.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace eikonal::scene_file {
 
-/// Most dots of a text that are no decimal points; they bound the depth of its tables, whatever else the text is.
+/// Largest number of dots in a text, decimal points excluded. It bounds the depth of the tables for any text.
 inline constexpr std::size_t kMostDots = 2000;
 
 /// The line (from 1) on which the text exceeds kMostDots; 0 if it does not.

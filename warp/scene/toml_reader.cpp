@@ -14,12 +14,12 @@ namespace eikonal::scene_file {
 
 namespace {
 
-/// Whether it is a --set option's, not the file's.
+/// Whether a node comes from a --set option, and not from the file.
 bool from_option(const toml::source_region& source, const std::filesystem::path& file) {
     return source.path && *source.path != file.string();
 }
 
-/// The value as a person would recognise it in the file; tables and long text are cut short.
+/// The value as it looks in the file. Tables and long texts are cut short.
 std::string shown(const toml::node& node) {
     if (node.is_table()) return "a table";
     std::string text;
@@ -33,13 +33,14 @@ std::string shown(const toml::node& node) {
     } else {
         std::ostringstream out;
         node.visit([&out](const auto& concrete) { out << concrete; });
-        // the shortest number that reads back the same, where toml++ prints 17 digits
+        // fmt prints the shortest number that reads back the same; toml++ would print 17 digits.
         text = node.is_floating_point() ? fmt::format("{}", *node.value_exact<double>()) : out.str();
     }
     return shortened(text);
 }
 
-/// The number in `node`, in T's range and the key's; `whole` is the entry whose value a message shows.
+/// The number in `node`, checked against the ranges of T and of the key. `whole` is the entry whose value a message
+/// shows.
 template <class T>
 T number(const Entry& whole, const toml::node& node, const Range& range) {
     if constexpr (std::is_integral_v<T>) {
@@ -58,7 +59,7 @@ T number(const Entry& whole, const toml::node& node, const Range& range) {
     }
 }
 
-/// The numbers of an array, which must be as long as `target`.
+/// The numbers of an array, which must have the length of `target`.
 template <class T>
 void numbers(const Entry& entry, std::span<T> target, const Ranges& ranges) {
     const toml::array* array = entry.node.as_array();
@@ -167,7 +168,7 @@ void TomlReader::fail_unknown(const toml::key& name, const Keys& keys) const {
     std::vector<std::string_view> valid;
     for (const Key& key : keys) valid.push_back(key.name());
     const std::string key = shortened(name.str());
-    const bool typed = std::find(valid.begin(), valid.end(), "type") != valid.end();  // a medium
+    const bool typed = std::find(valid.begin(), valid.end(), "type") != valid.end();  // true for a medium
     const std::string type = typed ? table()["type"].value_or(std::string()) : "";
     const std::string wrong = !type.empty() ? fmt::format("{} of type \"{}\" has no key '{}'", entry_.name, type, key)
                               : entry_.name.empty() ? fmt::format("unknown key '{}'", key)

@@ -1,7 +1,7 @@
 /// Reads keys (noise/medium/keys.h) from the nodes of a TOML file. Internal to the scene reader.
 ///
-/// Types, ranges, unknown keys, the nearest valid name and contradictions are checked here, for every key list alike.
-/// An integer is accepted where a real number is wanted; NaN and infinity never.
+/// Types, ranges, unknown keys, nearest valid names and contradictions are checked here for every list of keys.
+/// An integer is accepted where a real number is wanted. NaN and infinity are never accepted.
 /// Errors: UserError, one printable line "file:line: key: what is wrong, what is allowed".
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace eikonal::scene_file {
 
-/// One value of the file: its node, its dotted name ("medium.0.cn2"; empty: the scene itself), its file and the help
+/// One value of the file: its node, its dotted name ("medium.0.cn2"; empty: the scene itself), its file, and the help
 /// text of its key.
 struct Entry {
     const toml::node& node;
@@ -37,7 +37,7 @@ std::string place(const toml::source_region& source, const std::filesystem::path
 /// Throws UserError "place: name: what".
 [[noreturn]] void fail(const Entry& entry, std::string_view what);
 
-/// The same for the common case "value V, must be … (help text of the key)", V in TOML's own notation.
+/// Throws UserError "place: name = V, must be … (help text of the key)", with V in TOML's own notation.
 [[noreturn]] void fail_value(const Entry& entry, std::string_view must_be);
 
 class TomlReader final : public KeyReader {
@@ -50,7 +50,7 @@ class TomlReader final : public KeyReader {
     std::uint64_t read_uint64(const Range& range) override;
     double read_double(const Range& range) override;
     std::string read_text() override;
-    /// Relative to the folder of the file; relative to the working folder if a --set option gives it.
+    /// The path, relative to the folder of the file. If a --set option gives it, relative to the working folder.
     std::filesystem::path read_path() override;
     void read_numbers(std::span<double> target, const Ranges& ranges) override;
     void read_numbers(std::span<int> target, const Ranges& ranges) override;
