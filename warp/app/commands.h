@@ -1,6 +1,6 @@
-/// The four commands of `eikonal`. Each ends once a stop is requested, and returns the exit status: 0 all frames
-/// written, 1 some frame failed. UserError (status 2) and FrameError (status 1) leave them as exceptions only before
-/// any frame was begun.
+/// The four commands of `eikonal`. Each returns the exit status: 0 if all frames were written, 1 if some frame failed.
+/// Each ends once a stop is requested. UserError (status 2) and FrameError (status 1) are thrown only before the first
+/// frame is begun.
 #pragma once
 
 #include <stop_token>

@@ -27,7 +27,7 @@ FrameMeasure measure(const FootageShot& shot, const ExplainedRun& run) {
 void explain_memory(const ExplainedRun& run) {
     const std::size_t at_a_time = static_cast<std::size_t>(run.threads + kFramesAhead),
                       frames = run.frames.empty() ? at_a_time : std::min(run.frames.size(), at_a_time);
-    // what has been measured had neither the frame's picture nor the warped one
+    // The measured peak contains neither the frame's picture nor the warped one.
     const double pictures = run.resample ? 2.0 * 4 * sizeof(float) * static_cast<double>(run.display.area()) : 0;
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

@@ -92,7 +92,7 @@ PixelWindow pixels_of(const Footage& footage) {
             right = std::max(right, data.x0 + data.width);
             bottom = std::max(bottom, data.y0 + data.height);
         } catch (const FrameError&) {
-            // told when its turn comes
+            // The error is reported when the frame's turn comes.
         }
     }
     return {left, top, right - left, bottom - top};
@@ -117,7 +117,7 @@ Footage find_footage(const std::filesystem::path& path, const std::vector<int>& 
     }
     footage.frames = footage.files.find_frames();
     if (footage.frames.empty()) throw FrameError(fmt::format("no file matches '{}'", path.string()));
-    // a damaged first frame must not hide the others
+    // A damaged first frame must not hide the others.
     describe_picture(first_header(footage.files, wanted.empty() ? footage.frames : wanted), footage);
     return footage;
 }

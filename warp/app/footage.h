@@ -15,36 +15,39 @@ namespace eikonal {
 
 enum class FootageKind { Still, Sequence, Movie };
 
-/// What kind of footage a path names, by its spelling alone.
+/// The kind of footage that a path names. It depends on the spelling of the path alone.
 FootageKind footage_kind(const std::filesystem::path& path);
 
-/// Footage that exists: its kind, frames and first picture's properties.
+/// Footage that exists: its kind, its frames and the properties of its first picture.
 struct Footage {
     FootageKind kind = FootageKind::Still;
-    FilePattern files;           ///< of a still or a sequence
-    std::vector<int> frames;     ///< ascending; empty for a still, and for a movie whose length its container hides
-    bool count_is_exact = true;  ///< of a movie's frames; else estimated from its length
-    PixelWindow display;         ///< of the first readable frame among those wanted
+    FilePattern files;           ///< the files of a still or a sequence
+    std::vector<int> frames;     ///< ascending; empty for a still, and for a movie whose container states no length
+    bool count_is_exact = true;  ///< of a movie: whether the number of frames is exact; else it is estimated
+    PixelWindow display;         ///< display window of the first readable frame among those wanted
     double pixel_aspect = 1;
     std::optional<Rational> fps;  ///< as stored
-    int source_bits = 8;          ///< of a colour channel: 8 … 16 integer, 16 half, 32 float
-    int channels = 4;             ///< of all parts
+    int source_bits = 8;          ///< bits of a colour channel: 8 … 16 integer, 16 half, 32 float
+    int channels = 4;             ///< number of channels of all parts
     bool has_alpha = false;
     std::vector<std::string> notes;  ///< what the user should know (rotation, interlace)
 };
 
-/// Looks at the files. `wanted`: the frames that will be read; empty: all there are. `still`: the frame that a still
-/// is, if none is wanted. FrameError: none found, unreadable (names the frame). UserError: a folder, an empty name.
+/// Looks for footage and examines its files. `wanted`: the frames that will be read; empty: all that exist. `still`:
+/// the frame number of a still if none is wanted. FrameError (names the frame): no file found, or unreadable.
+/// UserError: a folder, or an empty name.
 Footage find_footage(const std::filesystem::path& path, const std::vector<int>& wanted, int still);
 
-/// The pixels that any frame there is has, overscan included, from the display window's corner: of pictures, their data
-/// windows. Reads the header of every file; what cannot be read counts as the display window.
+/// The union of the pixels of all existing frames, counted from the display window's corner. A picture has the pixels
+/// of its data window, which may include overscan. Reads the header of every file. A file that cannot be read counts as
+/// its display window.
 PixelWindow pixels_of(const Footage& footage);
 
-/// The header of the first of `frames` (at least one) whose file can be read; if none can, FrameError names the first.
+/// The header of the first of `frames` (at least one) whose file can be read. FrameError, which names the first frame,
+/// if none can be read.
 Picture first_header(const FilePattern& files, const std::vector<int>& frames);
 
-/// A sequence's numbers that are missing between its first and last, given its usual step.
+/// The frame numbers that are missing between the first and the last, if the sequence has its usual step.
 std::vector<int> missing_frames(const std::vector<int>& frames);
 
 /// "1, 3, 5 … 9 (12 in all)": a list of frames for a message.

@@ -9,14 +9,15 @@ namespace {
 
 constexpr std::size_t kNameWidth = 32;
 
-/// Columns of a text on a terminal: its code points.
+/// Number of columns that a text takes on a terminal: its number of code points.
 std::size_t columns(std::string_view text) {
     std::size_t count = 0;
     for (const char c : text) count += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
     return count;
 }
 
-/// "  name      text", the text wrapped under itself, and on its own lines where the name is long.
+/// One entry of the help, "  name      text". The text is wrapped in its own column. It begins on a new line if the
+/// name is long.
 std::string entry(const std::string& name, const std::string& text) {
     std::string out = "  " + name;
     std::size_t at = 2 + columns(name);

@@ -1,4 +1,4 @@
-/// How --help reads: usage, then groups of options, descriptions wrapped to kHelpWidth columns.
+/// The format of --help: usage, then groups of options, with descriptions wrapped to kHelpWidth columns.
 #pragma once
 
 #include <CLI/CLI.hpp>

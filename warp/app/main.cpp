@@ -1,4 +1,4 @@
-/// eikonal: adds physically computed heat shimmer to footage. Declare options, validate, run, report.
+/// eikonal: adds physically computed heat shimmer to footage. main declares options, validates them, runs and reports.
 
 #include <malloc.h>
 
@@ -12,13 +12,14 @@
 
 namespace {
 
-/// Frames are tens of megabytes, allocated and freed at every turn: keep the pages instead of asking for fresh ones.
+/// Keeps freed memory for reuse. Every frame allocates and frees tens of megabytes; fresh pages each time would be
+/// slow.
 void keep_freed_memory() {
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, -1);
 }
 
-/// The scene that a command reads; null for those that read none.
+/// The scene file that a command reads; null for a command that reads none.
 template <class Options>
 const eikonal::SceneOptions* scene_of(const Options& options) {
     if constexpr (requires { options.shot.scene; }) return &options.shot.scene;
@@ -46,7 +47,7 @@ int main(int argc, char** argv) {
     const ProgramWords words{"eikonal", "fewer --threads or smaller pictures need less",
                              "the same command makes the rest"};
     const int status = exit_status(words, [&] { return run_command(parse_options(argc, argv), interrupts.token()); });
-    // Everything of ours is closed. The global destructors of some 250 libraries would only delay the prompt.
+    // All files are closed here. Ending without the global destructors of some 250 libraries saves their time.
     const bool written = std::fflush(nullptr) == 0;
     std::_Exit(status == 0 && !written ? kFrameFailed : status);
 }

@@ -72,7 +72,7 @@ std::string joined(const Names<T>& names) {
     return text;
 }
 
-/// An option whose value is one of a list of names.
+/// Adds an option whose value is one of a list of names.
 template <class Target, class T>
 void add_choice(CLI::App& app, const std::string& flag, Target& target, const Names<T>& names,
                 const std::string& help) {
@@ -100,7 +100,7 @@ double number(const std::string& option, std::string_view text) {
     return *value;
 }
 
-/// A number with a range; `allowed` says it in words.
+/// Adds an option whose value is a number in a range. `allowed` is the range in words.
 template <class Target>
 void add_number(CLI::App& app, const std::string& flag, Target& target, const std::string& type,
                 const std::string& help, const std::string& allowed, bool (*valid)(double)) {
@@ -136,7 +136,7 @@ std::array<double, 2> pair_of(const std::string& option, const std::string& text
             number(option, std::string_view(text).substr(comma + 1))};
 }
 
-/// Heading under which help lists the options that follow.
+/// Begins the heading under which help lists the options that follow.
 void begin_group(CLI::App& app, const std::string& name) {
     app.option_defaults()->group(name);
 }
@@ -375,7 +375,7 @@ Command parse_options(int argc, const char* const* argv) {
     if (app.got_subcommand("warp")) {
         check(warp.shot.depth);
         if (warp.shutter > 0 && warp_command->count("--samples") == 0)
-            warp.samples = 9;  // odd: the middle one is the frame's own
+            warp.samples = 9;  // odd, so that the middle instant is the frame's own
         if (warp.shutter == 0 && warp.samples > 1)
             throw UserError("--samples: has no meaning without --shutter; give --shutter 0.5");
         return warp;

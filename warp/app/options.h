@@ -1,5 +1,5 @@
-/// What the user asks of `eikonal`, as typed: one struct a command, filled by parse_options and not yet checked against
-/// any file. Defaults are those of an omitted option.
+/// The options of `eikonal` as typed by the user: one struct a command. parse_options fills it without looking at any
+/// file. Defaults are those of an omitted option.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace eikonal {
 
 enum class ProgressStyle { Auto, Bar, Plain, None };
 
-/// Which scene, and what is changed in it.
+/// The scene, and the changes to it.
 struct SceneOptions {
     std::optional<std::filesystem::path> scene;
     std::optional<std::string> preset;
@@ -26,15 +26,15 @@ struct SceneOptions {
     std::optional<double> fov;
 };
 
-/// The shot: what the displacement is made of.
+/// The options of a shot, which determine the displacement.
 struct ShotOptions {
     SceneOptions scene;
     DepthSettings depth;
     StrengthSettings strength;
-    std::optional<std::string> mask;  ///< FILE[:CHANNEL]
+    std::optional<std::string> mask;  ///< FILE[:CHANNEL] of a matte
 };
 
-/// How the work is done.
+/// The options of a run, which do not change the result.
 struct RunOptions {
     std::optional<std::string> frames;
     int threads = 0;  ///< 0: all processors
@@ -45,7 +45,7 @@ struct RunOptions {
     ProgressStyle progress = ProgressStyle::Auto;
     std::optional<std::filesystem::path> report;
 
-    /// Whether anyone will read how far the maps are off.
+    /// Whether the errors of the maps are reported anywhere.
     bool states_errors() const { return verbose || report || explain; }
 };
 
@@ -73,24 +73,25 @@ struct MapOptions {
 struct FieldOptions {
     std::filesystem::path output;
     SceneOptions scene;
-    std::optional<double> frame;  ///< left out: the scene's first
+    std::optional<double> frame;  ///< if left out, the scene's first
     int medium = 0;
     RunOptions run;
 };
 
 struct PresetsOptions {};
 
-/// help or version was asked for: print `text` and exit 0.
+/// The text to print, with exit status 0, if the user asked for help or the version.
 struct Information {
     std::string text;
 };
 
 using Command = std::variant<WarpOptions, MapOptions, FieldOptions, PresetsOptions, Information>;
 
-/// The finite number that is all of `text`.
+/// The finite number that `text` consists of; nothing if it is anything else.
 std::optional<double> parse_number(std::string_view text);
 
-/// Throws UserError: unknown options (with the nearest valid one), ill-formed values, contradictions.
+/// Parses the command line. UserError: an unknown option (with the nearest valid one), an ill-formed value, a
+/// contradiction.
 Command parse_options(int argc, const char* const* argv);
 
 }  // namespace eikonal

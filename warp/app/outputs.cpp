@@ -16,14 +16,14 @@ namespace eikonal {
 namespace fs = std::filesystem;
 namespace {
 
-/// A path that two names of the same file share, whether or not it exists; links are followed.
+/// A path that is the same for all names of one file, whether or not the file exists. Links are followed.
 fs::path identity(const fs::path& file) {
     std::error_code ignored;
     const auto path = fs::weakly_canonical(fs::absolute(file), ignored);
     return ignored ? fs::absolute(file).lexically_normal() : path;
 }
 
-/// "plate.####.exr" for "plate.exr".
+/// "plate.####.exr" from "plate.exr".
 std::string numbered(const fs::path& path, const std::string& extension) {
     return (path.parent_path() / (path.stem().string() + ".####" + extension)).string();
 }
@@ -50,7 +50,7 @@ void check_format(const std::string& option, const fs::path& path, OutputKind ki
 
 constexpr const char* kMakeAnew = "--overwrite makes it anew, another name keeps it";
 
-/// Why a whole file of size `found` is not what is asked for; empty if it may be.
+/// The reason why a whole file of size `found` is not the one asked for; empty if it may be.
 std::string other_size(const std::string& option, const fs::path& file, const PixelWindow& found,
                        const PixelWindow& wanted) {
     if (found.width == wanted.width && found.height == wanted.height) return {};
@@ -58,7 +58,7 @@ std::string other_size(const std::string& option, const fs::path& file, const Pi
                        file.string(), found.width, found.height, wanted.width, wanted.height, kMakeAnew);
 }
 
-/// By how much a number of frames may be off.
+/// How many frames more or fewer a movie may have than asked for.
 std::int64_t slack(std::int64_t frames, bool exact) {
     return exact ? 0 : 1 + frames / 50;
 }
@@ -101,7 +101,7 @@ void Outputs::check(const std::vector<int>& frames, const std::vector<NamedFiles
             return;
         }
         std::set<int> numbers(frames.begin(), frames.end());
-        if (!written) {  // frames that are not asked for must not be lost either
+        if (!written) {  // Existing frames that are not asked for must not be lost either.
             const std::vector<int> all = named.files.find_frames();
             numbers.insert(all.begin(), all.end());
         }
@@ -115,7 +115,7 @@ std::size_t Outputs::keep_finished(std::vector<int>& frames, const PixelWindow& 
                                    const std::stop_token& stop) const {
     struct Found {
         bool finished = true;
-        fs::path damaged;  ///< the first such file
+        fs::path damaged;  ///< the first damaged file
         std::string refusal;
     };
     const auto look = [&](int frame) {
@@ -176,7 +176,7 @@ bool Outputs::keep_movie(const PixelWindow& display, const AskedFrames& asked) c
         const std::int64_t stated = reader.frame_count().value_or(0);
         if (frames && *frames + slack(stated, reader.count_is_exact()) < stated)
             throw FrameError("it is cut off between two frames");
-        if (!frames && stated > 0) {  // Theora: its length tells
+        if (!frames && stated > 0) {  // a Theora movie states its length only
             frames = stated;
             estimated = true;
         }

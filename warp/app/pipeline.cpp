@@ -18,7 +18,7 @@
 namespace eikonal {
 namespace {
 
-/// Runs a stage; what it throws becomes the frame's error.
+/// Runs a stage. If it throws, the message becomes the frame's error.
 template <class Stage>
 void guarded(FrameRecord& record, Stage&& stage) {
     try {
@@ -75,7 +75,7 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
     };
     const auto work = [&](FrameItem* item) {
         const auto start = std::chrono::steady_clock::now();
-        // Isolated: a thread that waits for its frame's rows must not begin another frame meanwhile.
+        // Isolated, so that a thread that waits for rows of its frame does not begin another frame meanwhile.
         if (item->record.error.empty())
             tbb::this_task_arena::isolate([&] {
                 guarded(item->record, [&] {
@@ -88,7 +88,7 @@ RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::siz
         return item;
     };
     std::set<std::string_view> told;
-    bool broken = false;  // a movie cannot go on after a frame that it lacks
+    bool broken = false;  // true after a failed frame of a movie: the movie cannot go on without it
     const auto finish = [&](FrameItem* raw) {
         const std::unique_ptr<FrameItem> item(raw);
         FrameRecord& record = item->record;
@@ -134,7 +134,7 @@ void print_outcome(const RunResult& result, const RunOptions& options, std::size
     const auto bad = static_cast<std::size_t>(std::count_if(result.records.begin(), result.records.end(),
                                                             [](const FrameRecord& r) { return !r.error.empty(); }));
     const std::size_t written = result.records.size() - bad;
-    total = std::max(total, result.records.size());  // a movie may hide its length
+    total = std::max(total, result.records.size());  // the stated length of a movie may be too small
     if (result.interrupted)
         fmt::print(stderr, "eikonal: interrupted after {} of {} frames; {}\n", written, total, rest);
     else if (bad > 0 && total > 1)

@@ -1,9 +1,9 @@
-/// Frames through a bounded pipeline: taken in order, worked on in parallel, finished in order. Reading, warping and
-/// writing of different frames overlap; no more than kFramesAhead frames beyond the number of threads are in memory,
-/// fewer where they are so large that memory_limit() does not hold them.
+/// A bounded pipeline of frames. Frames are taken in order, processed in parallel and finished in order, so that
+/// reading, warping and writing overlap. At most kFramesAhead frames more than there are threads are in memory. There
+/// are fewer if the frames are so large that memory_limit() does not hold them.
 ///
-/// A frame that fails is reported as "frame F: reason" and the others go on or, unless skip_bad_frames, no more are
-/// begun. A requested stop ends the run and gives up the frames under way. Nothing already finished is lost either way.
+/// A frame that fails is reported as "frame F: reason". With skip_bad_frames the others go on, otherwise no more are
+/// begun. A requested stop ends the run and gives up the frames in progress. In both cases finished frames are kept.
 #pragma once
 
 #include <functional>
@@ -22,46 +22,47 @@ namespace eikonal {
 
 inline constexpr int kFramesAhead = 1;
 
-/// What became of one frame.
+/// The result of one frame.
 struct FrameRecord {
     int frame = 0;
-    std::string error;            ///< empty: written
+    std::string error;            ///< empty if the frame was written
     double rms = 0, largest = 0;  ///< displacement [px]
     std::optional<StatedError> stated;
-    double seconds = 0;           ///< of work
-    std::vector<Remark> remarks;  ///< on its files
+    double seconds = 0;           ///< time of its work
+    std::vector<Remark> remarks;  ///< remarks on its files
 };
 
 struct RunResult {
-    std::vector<FrameRecord> records;  ///< in order
+    std::vector<FrameRecord> records;  ///< in the order of the frames
     bool interrupted = false;
-    std::vector<std::string> warnings;  ///< on the frames and their files, told once each
+    std::vector<std::string> warnings;  ///< about the frames and their files, each given once
     bool failed() const;
 };
 
-/// The three stages. `Item` is a frame on its way, owned by the pipeline.
+/// A frame in the pipeline, which owns it.
 struct FrameItem {
     virtual ~FrameItem() = default;
     FrameRecord record;
-    std::vector<int> following;  ///< further frames that fail with it, for the same reason
+    std::vector<int> following;  ///< further frames that fail with this one for the same reason
 };
 struct Stages {
-    /// In order, one at a time: makes the next frame's item, with its record's frame set; null at the end. May throw
-    /// FrameError, which counts against the frames that `failing` then names.
+    /// Makes the item of the next frame, with its record's frame set; null at the end. Called in order, one call at a
+    /// time. May throw FrameError, which is then the error of the frames that `failing` names.
     std::function<std::unique_ptr<FrameItem>()> take;
     std::function<std::vector<int>()> failing;
-    /// In parallel. May throw.
+    /// Computes the frame. Called in parallel. May throw.
     std::function<void(FrameItem&)> work;
-    /// In order, one at a time; not called for failed frames. May throw.
+    /// Writes the frame. Called in order, one call at a time, and not for failed frames. May throw.
     std::function<void(FrameItem&)> finish;
-    bool in_one_file = false;  ///< a movie: a frame after a failed one is not written either
+    bool in_one_file = false;  ///< true for a movie: no frame after a failed one is written
 };
 
-/// frame_bytes: of memory that one frame takes on its way, about. UserError: more than there is.
+/// Runs the stages. frame_bytes: approximate memory of one frame in the pipeline [bytes]. UserError: a frame needs more
+/// than there is.
 RunResult run_pipeline(const Stages& stages, const RunOptions& options, std::size_t total, int threads,
                        double frame_bytes, const std::stop_token& stop);
 
-/// Tells on stderr how a run ended that did not make all frames. `rest`: what becomes of them.
+/// Reports on stderr how a run ended that did not make all frames. `rest`: what will become of the others, in words.
 void print_outcome(const RunResult& result, const RunOptions& options, std::size_t total, const std::string& rest);
 
 }  // namespace eikonal

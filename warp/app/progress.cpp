@@ -34,13 +34,13 @@ Progress::Progress(ProgressStyle style, std::size_t total, std::string what)
 }
 
 Progress::~Progress() {
-    if (style_ != ProgressStyle::None && done_ > 0 && !ended_) draw(true);  // stopped, or longer or shorter than told
+    if (style_ != ProgressStyle::None && done_ > 0 && !ended_) draw(true);  // stopped, or the total was not exact
     if (on_screen_) std::fputc('\n', stderr);
 }
 
 void Progress::draw(bool last) {
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-    const bool known = total_ > 0;  // a movie may hide its length
+    const bool known = total_ > 0;  // the length of a movie may be unknown
     ended_ = last;
     const double left =
         done_ > 0 && known ? elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_) : 0;

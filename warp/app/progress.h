@@ -1,4 +1,4 @@
-/// Progress on stderr: a bar with the time left on a terminal, a plain line now and then otherwise.
+/// Progress on stderr: on a terminal a bar with the time left, otherwise a plain line at intervals.
 #pragma once
 
 #include <chrono>
@@ -13,14 +13,14 @@ namespace eikonal {
 class Progress {
   public:
     Progress(ProgressStyle style, std::size_t total, std::string what);
-    /// Says how many there were, if that has not been said, and ends the bar's line.
+    /// Reports the number of frames if that is still to be done, and ends the bar's line.
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// One more of `total` is done, or has failed. Thread-safe.
+    /// Counts one more frame of `total`, which is made or has failed. Thread-safe.
     void step(bool made = true);
-    /// Prints a line (a warning, a failure) without tearing the bar. Thread-safe.
+    /// Prints a line (a warning or a failure) above the bar. Thread-safe.
     void line(const std::string& text);
 
   private:

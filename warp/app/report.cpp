@@ -13,7 +13,7 @@
 namespace eikonal {
 namespace {
 
-/// The frame whose p95 is the largest; null if no frame has one.
+/// The frame with the largest p95; null if no frame has one.
 const FrameRecord* worst_frame(const RunResult& result) {
     const FrameRecord* worst = nullptr;
     for (const FrameRecord& r : result.records)

@@ -1,4 +1,4 @@
-/// --report: what a run did, as JSON, for scripts and render farms.
+/// --report: a description of a finished run as JSON, for scripts and render farms.
 #pragma once
 
 #include <filesystem>
@@ -8,23 +8,25 @@
 
 namespace eikonal {
 
-/// What a run of `warp` or `map` has been asked and has come to.
+/// The task of a run of `warp` or `map`, and what preceded its frames.
 struct RunSummary {
-    std::vector<std::string> warnings;  ///< told before the frames were made
-    std::size_t kept = 0;               ///< frames that were there already
-    std::size_t total = 0;              ///< frames to make
-    std::string rest;                   ///< what becomes of frames that were not made
+    std::vector<std::string> warnings;  ///< given before the frames were made
+    std::size_t kept = 0;               ///< number of frames that existed already
+    std::size_t total = 0;              ///< number of frames to make
+    std::string rest;                   ///< what becomes of the frames that were not made, in words
 };
 
-/// Ends a run: tells how exact its frames are, writes the report, and tells what was not made. Returns the exit status.
+/// Ends a run. Reports the errors of its frames, writes the report file, and reports which frames were not made.
+/// Returns the exit status.
 int conclude(const FootageShot& shot, const RunOptions& options, const RunSummary& summary, RunResult& result);
 
-/// Tells on stderr that frames are off by more than the shot's tolerance and, if `verbose`, by how much they are off
-/// at all. What is told goes to the result's warnings.
+/// Reports on stderr that frames exceed the shot's tolerance. If `verbose`, also reports the largest errors. The lines
+/// are added to the result's warnings.
 void tell_errors(const Shot& shot, RunResult& result, bool verbose);
 
-/// Writes frames (rms and largest displacement and stated error in px, seconds, error), models and how they were
-/// chosen, gain, expected rms, notes and warnings.
+/// Writes the report file. For each frame it holds the rms and largest displacement and the stated error in px, the
+/// seconds, and the error message. It also holds the models and how they were chosen, the gain, the expected rms, notes
+/// and warnings.
 void write_report(const std::filesystem::path& file, const FootageShot& shot, const RunSummary& summary,
                   const RunResult& result);
 

@@ -42,7 +42,7 @@ FieldSlices make_slices(const FieldOptions& options, const Scene& scene) {
     return medium->slices(t, {scene.optics.ray_equation, index_law(scene.optics).ambient(), scene.optics.exaggeration});
 }
 
-/// UserError: a slice as it is computed, and its copy as it is written, are more than there is memory.
+/// UserError if a slice and its copy for the file need more memory than there is.
 void check_memory(const FieldSlices& slices) {
     const double bytes = 2.0 * sizeof(float) * kFieldChannels * slices.width * slices.height;
     const auto memory = static_cast<double>(memory_limit());

@@ -1,4 +1,4 @@
-/// `eikonal map`: displacement maps without any footage.
+/// `eikonal map`: displacement maps without footage.
 
 #include <fmt/format.h>
 
@@ -16,10 +16,10 @@
 namespace eikonal {
 namespace {
 
-/// Memory of a pixel on its way: map, depth, matte, and the map and the STMap as they are written.
+/// Memory per pixel of a frame [bytes]: map, depth, matte, and the map and the STMap as they are written.
 constexpr double kMapBytes = 8 + 8 + 12 + 2 * 12;
 
-/// Resolution: the scene's, else that of the first depth map that can be read, else kDefaultResolution.
+/// The resolution: that of the scene, else that of the first readable depth map, else kDefaultResolution.
 PixelWindow choose_display(const Scene& scene, const DepthSettings& depth, const std::vector<int>& frames) {
     if (scene.camera.resolution) return {0, 0, (*scene.camera.resolution)[0], (*scene.camera.resolution)[1]};
     if (depth.depth)
@@ -36,7 +36,7 @@ Outputs map_outputs(const MapOptions& options) {
     return outputs;
 }
 
-/// Makes and writes the map of one frame.
+/// Computes and writes the map of one frame.
 void make_map(const FootageShot& shot, const Outputs& outputs, FrameRecord& record) {
     const PixelWindow& display = shot.shot().display();
     const Shot::Maps made = shot.maps(record.frame, {0}, {}, display, record.remarks);

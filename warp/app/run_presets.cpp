@@ -1,4 +1,4 @@
-/// `eikonal presets`, and what is printed for --help and --version.
+/// `eikonal presets`, and the output of --help and --version.
 
 #include <fmt/format.h>
 

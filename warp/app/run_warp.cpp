@@ -1,4 +1,4 @@
-/// `eikonal warp`: footage in, shimmering footage out.
+/// `eikonal warp`: reads footage and writes it with shimmer.
 
 #include <fmt/format.h>
 
@@ -22,17 +22,19 @@
 namespace eikonal {
 namespace {
 
-/// A plate on its way through the pipeline.
+/// A plate in the pipeline.
 struct PlateItem : FrameItem {
-    Plate plate;                        ///< empty picture until work() reads it, but for movies
-    std::optional<MovieFrame> encoded;  ///< for a movie output
+    Plate plate;                        ///< of pictures: empty until work() reads it
+    std::optional<MovieFrame> encoded;  ///< used if the output is a movie
 };
 
-/// Memory of a pixel on its way: linear colour in and out and of one instant, map, depth, matte, STMap; then as read.
+/// Memory per pixel of a frame [bytes]: linear colour of input, output and one instant; map; depth, matte and STMap.
+/// The pixels as read come on top.
 constexpr double kPixelBytes = 3 * 16 + 8 + 8 + 12;
 constexpr double kChannelBytes = 2 * 4;
 
-/// Frames to warp: the user's list `wanted`, or all there are. `still`: the frame that a still is, if none is wanted.
+/// The frames to warp: the user's list `wanted`, or all that exist. `still`: the frame number of a still if none is
+/// wanted.
 std::vector<int> choose_frames(const WarpOptions& options, const Footage& footage, const std::vector<int>& wanted,
                                int still, bool& hole) {
     std::vector<int> frames = options.run.frames ? wanted : footage.frames;
@@ -64,8 +66,8 @@ std::vector<int> choose_frames(const WarpOptions& options, const Footage& footag
     return frames;
 }
 
-/// The frame that a still is, if --frames does not say: its name's number where sequences have it, else the scene's
-/// first. `notice`: what to tell of that, and of a number that may be meant.
+/// The frame number of a still if --frames does not state it. It is the number in the file's name where sequences have
+/// it, else the scene's first frame. `notice`: what to report about that, and about a number that may be meant.
 int frame_of_still(const WarpOptions& options, int first_frame, std::string& notice) {
     if (options.run.frames || footage_kind(options.input) != FootageKind::Still) return first_frame;
     const auto named = number_in_name(options.input);
@@ -104,7 +106,7 @@ class WarpRun {
     }
 
     std::unique_ptr<FrameItem> take() {
-        // a movie whose length its container hides is read to its end
+        // A movie whose container states no length is read to its end.
         const bool open_ended = reader_ && frames_.empty();
         if (!open_ended && next_ == frames_.size()) return nullptr;
         auto item = std::make_unique<PlateItem>();
@@ -120,11 +122,11 @@ class WarpRun {
             bool there = false;
             try {
                 there = reader_->next(frame);
-                // an estimate of the number of frames proves no frame missing
+                // If the number of frames is an estimate, no frame is known to be missing.
                 if (!there && (open_ended || (!options_.run.frames && !reader_->count_is_exact()))) return nullptr;
                 if (!there) throw FrameError(fmt::format("'{}' ends earlier", options_.input.string()));
             } catch (const FrameError&) {
-                // what a movie that ends too early lacks is told at once
+                // The frames that a too short movie lacks are reported at once.
                 for (; reader_->at_end() && next_ < frames_.size(); ++next_) failing_.push_back(frames_[next_]);
                 throw;
             }
@@ -184,7 +186,7 @@ class WarpRun {
         if (writer_) writer_->write(*static_cast<PlateItem&>(base).encoded);
     }
 
-    /// Names the movie, if all went well.
+    /// Closes the movie, and gives it its name if all frames were written.
     void close() {
         if (writer_) writer_->finish();
     }
@@ -240,7 +242,7 @@ class WarpRun {
     std::vector<int> failing_{0};
 };
 
-/// Finds wrong options of depth and matte before the first frame is begun.
+/// Finds wrong options for depth and matte before the first frame is begun.
 void try_companions(const Footage& footage, const FootageShot& shot, int frame) {
     const std::filesystem::path file = footage.files.at(frame);
     if (footage.kind == FootageKind::Movie) return shot.try_companions(frame, {nullptr, file, {}}, footage.display);
@@ -248,11 +250,11 @@ void try_companions(const Footage& footage, const FootageShot& shot, int frame) 
         const Plate plate = shot.depth().inside_picture() ? read_picture(file) : read_picture_header(file);
         shot.try_companions(frame, {&std::get<Picture>(plate), file, {}}, plate_window(plate));
     } catch (const FrameError&) {
-        // the frame's own trouble, told when its turn comes
+        // An error of the frame itself is reported when its turn comes.
     }
 }
 
-/// Memory that a frame takes on its way, about [bytes].
+/// Approximate memory of a frame in the pipeline [bytes].
 double bytes_of_frame(const WarpOptions& options, const Footage& footage, const FootageShot& shot) {
     return shot.shot().frame_bytes(kPixelBytes + kChannelBytes * footage.channels + 8.0 * options.samples);
 }
@@ -271,7 +273,8 @@ RunResult warp_frames(const WarpOptions& options, const Footage& footage, const 
     return result;
 }
 
-/// What an existing movie should hold. A source whose container counts nothing is read through for it.
+/// The number of frames that an existing movie should have. If the container of the source states none, the source is
+/// read through to count them.
 AskedFrames asked_of_movie(const WarpOptions& options, const Footage& footage, const std::vector<int>& frames) {
     const bool counted =
         footage.kind != FootageKind::Movie || options.run.frames || (footage.count_is_exact && !frames.empty());
@@ -291,14 +294,14 @@ Outputs warp_outputs(const WarpOptions& options) {
     return outputs;
 }
 
-/// The footage and the frames of it to warp.
+/// The footage, and its frames to warp.
 struct Take {
     Footage footage;
     std::vector<int> frames;
-    bool hole = false;  ///< frames are missing between them
+    bool hole = false;  ///< whether frames are missing between them
 };
 
-/// Looks for the footage, and tells on stderr what is odd about it.
+/// Looks for the footage, and reports on stderr what is unusual about it.
 Take find_take(const WarpOptions& options, int first_frame) {
     const std::vector<int> wanted = options.run.frames ? parse_frames(*options.run.frames) : std::vector<int>{};
     std::string notice;

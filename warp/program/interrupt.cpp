@@ -1,7 +1,7 @@
-// std::stop_source::request_stop takes a lock and calls callbacks, which a signal handler must not do. The handler
-// posts a semaphore instead, which it may, and a thread that waits for the semaphore requests the stop.
+// A signal handler must not call std::stop_source::request_stop, which takes a lock and calls callbacks. It may post a
+// semaphore. A thread waits for this semaphore and requests the stop.
 //
-// A handler is kept, rather than blocked signals and sigwait, because it makes a read that would wait for ever fail.
+// Blocked signals and sigwait would do without a handler. The handler is needed because it also ends a read that waits.
 
 #include "warp/program/interrupt.h"
 
@@ -17,7 +17,7 @@
 namespace eikonal {
 namespace {
 
-// What the handler touches; a signal may arrive after Interrupts has ended, so they live as long as the program.
+// The handler uses these. A signal may arrive after Interrupts has ended, so they live as long as the program.
 std::atomic<bool> raised{false};
 std::atomic<const char*> name{""};
 sem_t wake;
@@ -41,7 +41,7 @@ void handle(int) {
 void set_handlers() {
     struct sigaction action {};
     sigemptyset(&action.sa_mask);
-    action.sa_handler = handle;  // without SA_RESTART: a read or write that waits ends
+    action.sa_handler = handle;  // SA_RESTART is not set, so that a read or write that waits ends
     for (const int signal : kSignals) sigaction(signal, &action, nullptr);
     action.sa_handler = SIG_IGN;
     for (const int signal : {SIGPIPE, SIGXFSZ}) sigaction(signal, &action, nullptr);
@@ -52,7 +52,7 @@ void set_handlers() {
 Interrupts::Interrupts(const char* program) {
     name = program;
     sem_init(&wake, 0, 0);
-    // The watcher takes no signal itself: the system then gives them to a thread that may be waiting in a read.
+    // The watching thread blocks all signals. The system then delivers them to a thread that may be waiting in a read.
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -1,6 +1,6 @@
-/// Ctrl-C and termination requests, turned into a std::stop_token for the work of a program.
+/// Turns Ctrl-C and termination requests into a std::stop_token for the work of a program.
 ///
-/// Files under way are temporary ones (atomic_file.h), so finished frames stay whole however the program ends.
+/// Files in progress are temporary ones (atomic_file.h). Finished frames therefore stay whole however the program ends.
 #pragma once
 
 #include <stop_token>
@@ -8,12 +8,12 @@
 
 namespace eikonal {
 
-/// While it lives, the first SIGINT, SIGTERM or SIGHUP requests a stop, and a second one ends the program at once with
-/// exit status 1. A closed pipe and a file beyond the size limit are errors of the write that meets them, not signals.
-/// One a program, made first thing in main: threads started earlier would have other signal settings.
+/// While an object lives, the first SIGINT, SIGTERM or SIGHUP requests a stop, and a second one ends the program at
+/// once with exit status 1. A closed pipe and a file beyond the size limit raise no signal; the write fails instead. A
+/// program has one object, made first thing in main, because threads started earlier would keep other signal settings.
 class Interrupts {
   public:
-    /// program: the name that its last line begins with; a literal.
+    /// program: the name at the beginning of the program's last line; a string literal.
     explicit Interrupts(const char* program);
     ~Interrupts();
     Interrupts(const Interrupts&) = delete;

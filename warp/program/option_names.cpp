@@ -6,7 +6,7 @@
 namespace eikonal {
 namespace {
 
-/// The settings that messages of the libraries name.
+/// The settings that occur in messages of the libraries.
 constexpr std::array<std::string_view, 19> kSettings{
     "codec",  "depth", "depth_meeting", "depth_range", "depth_type", "distance", "far", "fov", "frames",   "gain",
     "ground", "mask",  "model",         "models",      "preset",     "quality",  "rms", "set", "tolerance"};

@@ -1,4 +1,4 @@
-/// Settings as the user of a program types them.
+/// Names of settings as the user of a program types them.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace eikonal {
 
-/// A message of the libraries with its settings spelled as options: `depth_range` becomes --depth-range. The libraries
-/// put names of settings between backticks (noise/base/error.h). Text between backticks that is no setting stays.
+/// Replaces the names of settings in a message by those of options: `depth_range` becomes --depth-range. The libraries
+/// put names of settings between backticks (noise/base/error.h). Other text between backticks stays as it is.
 std::string with_options(std::string_view message);
 
 }  // namespace eikonal

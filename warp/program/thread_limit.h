@@ -1,11 +1,11 @@
-/// How many threads a program uses.
+/// The number of threads that a program uses.
 #pragma once
 
 #include <tbb/global_control.h>
 
 namespace eikonal {
 
-/// While it lives, oneTBB and the image library use no more than so many threads.
+/// While an object lives, oneTBB and the image library use at most this number of threads.
 class ThreadLimit {
   public:
     /// threads: 0 for all processors.
