@@ -10,14 +10,14 @@
 namespace eikonal {
 namespace {
 
-/// The range of every length in a scene file.
+/// UserError unless `metres` lies in the range of every length in a scene file.
 void check_length(std::string_view what, double metres) {
     if (!(metres >= kSmallestPositive && metres <= kLargestValue))
         throw UserError(
             fmt::format("{} {:g} must be from {:g} to {:g} m", what, metres, kSmallestPositive, kLargestValue));
 }
 
-/// Depth along the pixels' rays becomes axial; every depth is limited to kNearestDepth … deepest.
+/// Converts depth along the pixels' rays to axial depth. Every depth is limited to kNearestDepth … deepest.
 void make_axial(DepthBuffer& buffer, const PixelWindow& seen, const Camera& camera, float deepest) {
     const bool oblique = buffer.along_ray && camera.projection == Projection::Perspective;
     const float nearest = std::min(kNearestDepth, deepest);
@@ -76,7 +76,7 @@ DepthInput::DepthInput(const DepthSettings& s, const Scene& scene)
         throw UserError(
             "`depth_meeting`: has no meaning where everything is at one distance; give `depth` or `ground`");
     if (known.kind == KnownDepth::Kind::Map) check_depth_options(options_);
-    check_length("`depth_range`: the farthest distance", far);  // all others are within it already
+    check_length("`depth_range`: the farthest distance", far);  // the other settings are within the range already
 }
 
 void DepthInput::use_map(const std::string& file_and_channel) {
@@ -103,7 +103,7 @@ ShotDepth DepthInput::of_shot(const PixelWindow& display, const Camera& camera) 
     try {
         return {at(0, {}, display, display, camera, told_later), meeting_};
     } catch (const FrameError&) {
-        return {{}, meeting_};  // what is wrong with the map is told of the first frame
+        return {{}, meeting_};  // an error of the map is reported with the first frame
     }
 }
 

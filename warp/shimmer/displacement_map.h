@@ -14,7 +14,7 @@ struct DisplacementMap {
 };
 
 struct MapStatistics {
-    double rms = 0, largest = 0;  ///< of |d| [px]
+    double rms = 0, largest = 0;  ///< rms and largest value of |d| [px]
 };
 MapStatistics statistics(const DisplacementMap& map);
 

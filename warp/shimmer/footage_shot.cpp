@@ -65,7 +65,7 @@ void FootageShot::try_companions(int frame, const FrameInput& input, const Pixel
         depth_of(frame, input, window, ignored);
         if (matte_) matte_->at(frame, window, shot_.display(), ignored);
     } catch (const FrameError&) {
-        // told when its turn comes
+        // The error is reported when the frame's turn comes.
     }
 }
 

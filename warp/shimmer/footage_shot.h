@@ -1,4 +1,4 @@
-/// A shot whose depth and matte are read from files, frame by frame: what is needed beside the footage itself.
+/// A shot whose depth and matte are read from files for each frame. It handles all files but the footage itself.
 #pragma once
 
 #include <filesystem>
@@ -17,33 +17,33 @@ struct FootageShotSettings {
     DepthSettings depth;
     StrengthSettings strength;
     std::optional<std::string> mask;  ///< FILE[:CHANNEL] of a matte that scales the displacement, 0 … 1
-    bool state_errors = false;        ///< as ShotSettings
-    std::stop_token stop;             ///< as ShotSettings
+    bool state_errors = false;        ///< as in ShotSettings
+    std::stop_token stop;             ///< as in ShotSettings
 };
 
-/// Immutable, thread-safe. Errors as Shot's, DepthInput's and MatteInput's.
+/// Immutable, thread-safe. Errors: those of Shot, DepthInput and MatteInput.
 class FootageShot {
   public:
     FootageShot(Scene scene, const FootageShotSettings& settings);
 
     const Shot& shot() const { return shot_; }
     const DepthInput& depth() const { return depth_; }
-    /// The matte, if there is one.
+    /// The matte; nothing if there is none.
     const std::optional<MatteInput>& matte() const { return matte_; }
-    /// Shot's, and where depth comes from.
+    /// The notes of Shot, and one on where depth comes from.
     std::vector<std::string> notes() const;
 
-    /// The depth of a frame on the pixels `window`, as Shot takes it.
+    /// The depth of a frame on the pixels `window`, in the form that Shot takes.
     SharedDepth depth_of(int frame, const FrameInput& input, const PixelWindow& window,
                          std::vector<Remark>& remarks) const;
-    /// Maps at frame + offsets on `window`, masked. What is odd about depth and matte is added to `remarks`.
+    /// Maps at frame + offsets on `window`, scaled by the matte. Remarks on depth and matte are added to `remarks`.
     Shot::Maps maps(int frame, const std::vector<double>& offsets, const FrameInput& input, const PixelWindow& window,
                     std::vector<Remark>& remarks) const;
 
-    /// One line on the first file of depth or matte that is missing for one of `frames`.
+    /// One line that names the first missing file of depth or matte for `frames`; nothing if none is missing.
     std::optional<std::string> missing_companion(const std::vector<int>& frames) const;
-    /// Reads the files of one frame, to find wrong settings before any frame is begun. UserError: they cannot be what
-    /// the settings say. What is wrong with the frame itself is left for its turn.
+    /// Reads the files of one frame to find wrong settings before any frame is begun. UserError: the files contradict
+    /// the settings. Errors of the frame itself are ignored here and reported when its turn comes.
     void try_companions(int frame, const FrameInput& input, const PixelWindow& window) const;
 
   private:

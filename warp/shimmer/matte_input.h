@@ -1,4 +1,4 @@
-/// The matte that scales the displacement of each pixel, frame by frame, from files.
+/// The matte of each frame, read from files. It scales the displacement of each pixel.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class MatteInput {
     explicit MatteInput(const std::string& file_and_channel);
 
     const FilePattern& files() const { return files_; }
-    /// Values 0 … 1 on the pixels `data` (plane.h); what is odd about the file is added to `remarks`. FrameError.
+    /// Values 0 … 1 on the pixels `data` (plane.h). Remarks on the file are added to `remarks`. FrameError: unreadable.
     std::vector<float> at(int frame, const PixelWindow& data, const PixelWindow& display,
                           std::vector<Remark>& remarks) const;
 

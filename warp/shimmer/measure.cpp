@@ -14,7 +14,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Time of a whole picture, from that of its middle rows.
+/// Time to resample a whole picture [s], estimated from its middle rows.
 double resample_seconds(const DisplacementMap& map, Filter filter) {
     const int rows = std::min(kMeasuredRows, map.window.height);
     const PixelWindow strip{0, (map.window.height - rows) / 2, map.window.width, rows};

@@ -1,4 +1,4 @@
-/// What a frame of a shot will cost and be, measured on one frame: for previews of a run, before anything is made.
+/// The time, size and error of a shot's frames, measured on one frame before any is made.
 #pragma once
 
 #include <optional>
@@ -8,17 +8,17 @@
 
 namespace eikonal {
 
-inline constexpr int kMeasuredRows = 64;  ///< of the picture, resampled
+inline constexpr int kMeasuredRows = 64;  ///< rows of the picture that are resampled
 
-/// Wall time of this machine, now, of a whole picture [s]; the size and the stated error of its map.
+/// Wall time of a whole picture on this machine at this moment [s]; the size and the stated error of its map.
 struct FrameMeasure {
     double instant = 0, map = 0, resample = 0;
     MapStatistics size;
     std::optional<StatedError> error;
 };
 
-/// Measures a frame on the display window, without matte and shutter. depth: of those pixels. filter: of the picture,
-/// of which the middle rows are resampled; nothing: there is none.
+/// Measures a frame on the display window, without matte and shutter. depth: of the pixels of that window. filter: of
+/// the picture, whose middle rows are resampled; nothing if there is no picture.
 FrameMeasure measure_frame(const Shot& shot, double frame, const SharedDepth& depth, std::optional<Filter> filter);
 
 }  // namespace eikonal

@@ -1,6 +1,7 @@
-/// What a user or a host asks of a shot, as plain data. Every field has the default of a setting that is left out.
+/// The settings of a shot, as a user or a host program states them. They are plain data. Every field has the default of
+/// a setting that is left out.
 ///
-/// A setting's name in messages is the name of its field here, between backticks.
+/// Messages name a setting by the name of its field here, between backticks.
 #pragma once
 
 #include <array>
@@ -15,51 +16,51 @@
 
 namespace eikonal {
 
-/// Largest p95 of the displacement's error that the automatic choice of a model allows, where no tolerance is set [px].
+/// Default tolerance [px]: the largest p95 of the displacement's error that the automatic choice of a model allows.
 inline constexpr double kDefaultTolerance = 0.1;
 
-/// The footage, as far as it decides what is seen.
+/// The properties of the footage that decide what is seen.
 struct ViewSettings {
     PixelWindow display;  ///< its display window
     double pixel_aspect = 1;
-    std::optional<double> fps;  ///< its own, which the scene's overrides
-    std::optional<double> fov;  ///< horizontal [degrees], instead of the scene's
+    std::optional<double> fps;  ///< frame rate of the footage, which the scene's overrides
+    std::optional<double> fov;  ///< horizontal field of view [degrees], which overrides the scene's
     /// As DisplacerSettings::overscan.
     std::function<PixelWindow()> overscan;
 };
 
 /// Flat ground below the horizon.
 struct GroundSettings {
-    double height = 1;      ///< of the camera above it [m]
-    double horizon = 0;     ///< its row, from the display window's top
-    bool fraction = false;  ///< horizon is a part of the display window's height, else pixels
+    double height = 1;      ///< height of the camera above it [m]
+    double horizon = 0;     ///< row of the horizon, from the top of the display window
+    bool fraction = false;  ///< whether horizon is a part of the display window's height; else it is in pixels
 };
 
-/// Where the objects of the picture are. At most one of distance, depth, ground and given; without any of them the
-/// scene's [plate] says it.
+/// The depth of the picture's objects. At most one of distance, depth, ground and given is set. Without any of them the
+/// scene's [plate] states it.
 struct DepthSettings {
-    std::optional<double> distance;    ///< axial, of all pixels [m]
-    std::optional<std::string> depth;  ///< a file's FILE[:CHANNEL], or :CHANNEL of the frame's own picture
+    std::optional<double> distance;    ///< one axial distance of all pixels [m]
+    std::optional<std::string> depth;  ///< FILE[:CHANNEL] of a depth map, or :CHANNEL of the frame's own picture
     std::optional<GroundSettings> ground;
-    bool given = false;                   ///< the caller gives the values of each frame's pixels
-    std::optional<DepthType> depth_type;  ///< of `depth` and of given values; left out: DepthType::Z
+    bool given = false;                   ///< whether the caller gives a value for each pixel of each frame
+    std::optional<DepthType> depth_type;  ///< kind of the values of `depth` or `given`; if left out: DepthType::Z
     std::optional<std::array<double, 2>> depth_range;
     std::optional<double> far;                  ///< axial distance of the background [m]
-    std::optional<DepthMeeting> depth_meeting;  ///< left out: DepthMeeting::March
+    std::optional<DepthMeeting> depth_meeting;  ///< if left out: DepthMeeting::March
 };
 
-/// Which model computes the displacement.
+/// The model that computes the displacement.
 struct ModelRequest {
-    bool automatic = false;      ///< the cheapest within the tolerance
-    std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
+    bool automatic = false;      ///< take the cheapest model within the tolerance
+    std::optional<Model> model;  ///< used for every medium that it suits; if left out: each medium's default
 };
 
-/// How strong the displacement is, and how exact.
+/// The strength and the accuracy of the displacement.
 struct StrengthSettings {
     std::optional<double> rms;  ///< scale the displacement to this rms at the background [px] >= 0
-    double gain = 1;            ///< multiply it, >= 0
+    double gain = 1;            ///< factor on the displacement, >= 0
     ModelRequest model;
-    std::optional<double> tolerance;  ///< [px] > 0; implies the automatic choice unless a model is named
+    std::optional<double> tolerance;  ///< allowed error [px] > 0; implies the automatic choice unless a model is named
 };
 
 }  // namespace eikonal

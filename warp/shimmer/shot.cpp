@@ -13,7 +13,7 @@
 namespace eikonal {
 namespace {
 
-/// What the displacement is to be multiplied by.
+/// The factor on the displacement.
 double gain_for(const Displacer& displacer, const StrengthSettings& strength, double far) {
     if (!strength.rms) return strength.gain;
     const double natural = displacer.expected_rms(far);
@@ -26,7 +26,7 @@ double gain_for(const Displacer& displacer, const StrengthSettings& strength, do
     return natural > 0 ? strength.gain * *strength.rms / natural : 0;
 }
 
-/// One line that says how the model was chosen.
+/// One line on how the model was chosen.
 std::string describe(const ModelChoice& choice, double tolerance) {
     if (choice.exact)
         return fmt::format(
@@ -85,7 +85,7 @@ DisplacerSettings Shot::make_displacer_settings() const {
     d.model = strength.model.model;
     d.sample_errors = settings_.state_errors;
     d.stop = settings_.stop;
-    // a scale to an rms makes the weakest visible
+    // A scale to an rms may enlarge even the weakest displacement, so nothing is negligible.
     d.negligible = strength.rms || strength.gain == 0 ? 0 : kNegligibleShift / std::abs(strength.gain);
     return d;
 }

@@ -22,7 +22,7 @@ MapView view_of(const DisplacementMap& map, const PixelWindow& window) {
     return {first, window, stride};
 }
 
-/// Tens of megabytes that a thread keeps from frame to frame instead of clearing fresh pages for each.
+/// Buffers of tens of megabytes. A thread keeps them from frame to frame, since fresh pages would have to be cleared.
 struct Workspace {
     LinearImage in, out;
     std::vector<float> instant;
@@ -39,7 +39,7 @@ void add_up(const LinearImage& in, const std::vector<DisplacementMap>& maps, con
     const auto stride = 4 * static_cast<std::ptrdiff_t>(in.data.width);
     const ImageView source{in.pixels.data(), in.data, 4, stride};
     resample(source, view_of(maps.front(), in.data), {out.pixels.data(), in.data, 4, stride}, options);
-    // Sums run over the samples in order, pixel by pixel: the same for any number of threads.
+    // The samples are summed in order at each pixel, so that the result is the same for any number of threads.
     for (std::size_t m = 1; m < maps.size(); ++m) {
         check_stop(stop);
         std::vector<float>& instant = workspace().instant;
@@ -85,7 +85,7 @@ std::size_t warp_picture(Picture& picture, const std::vector<DisplacementMap>& m
         }
         const DataMover mover(part);
         if (mover.empty()) continue;
-        const Part source = part;  // colour of it is not read, only its data channels
+        const Part source = part;  // only the data channels are read, not the colour
         move_data(part, source, mover, maps[maps.size() / 2], settings.edge);
     }
     return strange;

@@ -1,4 +1,4 @@
-// The public interface (eikonal/eikonal.h) in terms of the library's own.
+// The public interface (eikonal/eikonal.h), implemented by the internal classes of the library.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,13 +19,13 @@ namespace eikonal {
 namespace {
 
 constexpr int kLargestSide = 65535;
-/// Channels that the resampler moves at a time.
+/// Number of channels that the resampler processes together.
 constexpr int kLanes = 4;
 
 template <class T>
 using Names = std::vector<std::pair<std::string_view, T>>;
 
-/// The value that a setting's text names.
+/// The value that the text of a setting names.
 template <class T>
 T named(std::string_view setting, std::string_view text, const Names<T>& names) {
     std::vector<std::string_view> valid;
@@ -111,13 +111,13 @@ WarpSettings warp_settings(const Settings& s) {
         s.dispersion, s.stop};
 }
 
-/// Values as the resampler takes them: NaN counts as 0 and infinity as the largest half, as in files (picture.h).
+/// A value as the resampler takes it. NaN counts as 0, and infinity as the largest half, as in files (picture.h).
 float finite(float v) {
     constexpr float kLargest = 65504;
     return std::isnan(v) ? 0 : std::isinf(v) ? std::copysign(kLargest, v) : v;
 }
 
-/// Channels first … first + count - 1 of pixels of `channels` values, as lanes.
+/// Copies channels first … first + count - 1 of pixels with `channels` values into lanes.
 void load_lanes(std::span<const float> in, std::size_t channels, std::size_t first, std::size_t count,
                 LinearImage& lanes) {
     for (std::size_t i = 0; i < lanes.data.area(); ++i)
@@ -129,7 +129,7 @@ void load_lanes(std::span<const float> in, std::size_t channels, std::size_t fir
 struct Shimmer::Shot {
     WarpSettings warp;
     FootageShot footage;
-    std::vector<double> offsets;  ///< of the instants within the shutter
+    std::vector<double> offsets;  ///< offsets of the instants within the shutter
     mutable tbb::task_arena arena;
 
     explicit Shot(const Settings& s)
@@ -143,7 +143,7 @@ struct Shimmer::Shot {
 
     const eikonal::Shot& shot() const { return footage.shot(); }
 
-    /// The maps of a frame's instants, one after another.
+    /// Computes the maps of a frame's instants one after another.
     eikonal::Shot::Maps maps(double frame, const std::vector<double>& instants, const Frame& input,
                              std::vector<Remark>& remarks) const {
         const PixelWindow& window = shot().display();

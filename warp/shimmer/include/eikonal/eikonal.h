@@ -1,4 +1,5 @@
-/// Heat shimmer for pictures, as a library: how hot air displaces every pixel of a frame, and the displaced picture.
+/// Heat shimmer for pictures, as a library. It computes how hot air displaces every pixel of a frame, and displaces the
+/// picture.
 ///
 ///     eikonal::Settings settings;
 ///     settings.preset = "hot-road";
@@ -9,14 +10,14 @@
 ///     shimmer.warp(pixels, 4, out, 12);
 ///
 /// Rules that hold for every call:
-///   - Row 0 is on top, pixels are row by row, channels and pairs are interleaved; x runs right, y down.
+///   - Row 0 is on top. Pixels are stored row by row; channels and pairs are interleaved. x runs right, y down.
 ///   - out(p) = in(p + d(p)), with the displacement d = (u, v) in pixels. Without displacement a pixel keeps its bits.
-///   - Lengths are metres, times frames or seconds, angles degrees. Depth is axial: along the camera's axis.
+///   - Lengths are in metres, times in frames or seconds, angles in degrees. Depth is axial: along the camera's axis.
 ///   - Frame F depends on the settings and F alone: not on other frames, the order of calls, threads or the machine.
 ///     Maps have the same bits as those of the program `eikonal map`.
-///   - Errors are exceptions: UserError for settings and scenes that cannot be, FrameError for one frame. Their text is
-///     one line, which names settings as the fields below, between backticks. Nothing is printed.
-///   - A Shimmer does not change once it is made: any number of threads may call it at once.
+///   - Errors are exceptions: UserError for impossible settings and scenes, FrameError for one frame. The message is one
+///     line. It names settings as the fields below, between backticks. Nothing is printed.
+///   - A Shimmer is immutable. Any number of threads may call it at once.
 ///
 /// Needs C++20. CMake: find_package(eikonal), target eikonal::eikonal. pkg-config: eikonal.
 #pragma once
@@ -37,42 +38,42 @@
 
 namespace eikonal {
 
-/// What a shot is. Every field has the default of what is left out; width and height must be set.
+/// The settings of a shot. Every field has the default of a setting that is left out. width and height must be set.
 struct Settings {
-    /// @name Scene: at most one of the first three; none of them is the preset `gentle`.
+    /// @name Scene: at most one of the first three. Without any of them the scene is the preset `gentle`.
     /// @{
     std::string scene;                  ///< path of a scene file (TOML)
     std::string scene_text;             ///< a scene's text (TOML)
     std::string preset;                 ///< name of a scene that comes with eikonal
     std::vector<std::string> set;       ///< changes to the scene: "medium.0.cn2=1e-13"
-    std::optional<std::uint64_t> seed;  ///< another turbulence of the same kind
+    std::optional<std::uint64_t> seed;  ///< another value gives other turbulence of the same kind
     /// @}
 
-    /// @name View: of the picture as it is shown.
+    /// @name View of the picture as it is shown.
     /// @{
     int width = 0, height = 0;  ///< [px], 1 … 65535
     double pixel_aspect = 1;    ///< width over height of a pixel
-    std::optional<double> fps;  ///< of the footage; the scene's own, if it has one, overrides it; else 24
-    std::optional<double> fov;  ///< horizontal field of view, instead of the scene's
+    std::optional<double> fps;  ///< of the footage; a value in the scene overrides it; else 24
+    std::optional<double> fov;  ///< horizontal field of view [degrees]; overrides the scene's
     /// @}
 
-    /// @name Depth: at most one of distance, ground and depth_map; none of them is what the scene's [plate] says.
+    /// @name Depth: at most one of distance, ground and depth_map. Without any of them the scene's [plate] states it.
     /// @{
-    std::optional<double> distance;               ///< of everything
-    std::optional<std::array<double, 2>> ground;  ///< camera height above flat ground, row of the horizon [px]
-    /// Each frame comes with a value for every pixel (Frame::depth).
+    std::optional<double> distance;               ///< one distance of all pixels [m]
+    std::optional<std::array<double, 2>> ground;  ///< camera height above flat ground [m], row of the horizon [px]
+    /// Whether each frame is given with a value for every pixel (Frame::depth).
     bool depth_map = false;
     std::string depth_type = "z";  ///< of those values: "z" metres along the axis, "ray" along the ray, "inverse" 1/z
-    std::optional<double> far;     ///< distance of the background; zero, infinite and NaN depth is background
+    std::optional<double> far;     ///< distance of the background [m]; depth 0, infinite or NaN is background
     /// @}
 
     /// @name Displacement
     /// @{
-    std::string model;                ///< a model's name, "auto", or nothing: what suits each medium
-    std::optional<double> tolerance;  ///< error allowed in 95 of 100 pixels [px]; implies "auto" without a model
-    std::optional<double> rms;        ///< scale to this expected rms at the background [px], fixed over the shot
-    double gain = 1;                  ///< multiply
-    bool state_errors = false;        ///< maps say what they are off by (Map::error); a tolerance asks for it, too
+    std::string model;                ///< name of a model, or "auto"; empty: each medium's default
+    std::optional<double> tolerance;  ///< error allowed in 95 of 100 pixels [px]; implies "auto" if no model is named
+    std::optional<double> rms;        ///< scale to this expected rms at the background [px], once for the whole shot
+    double gain = 1;                  ///< factor on the displacement
+    bool state_errors = false;        ///< whether maps state their error (Map::error); a tolerance implies it
     /// @}
 
     /// @name Picture
@@ -80,68 +81,68 @@ struct Settings {
     std::string filter = "cubic";  ///< "bilinear", "cubic", "lanczos3", "area"
     std::string edge = "mirror";   ///< what lies outside: "mirror", "clamp", "wrap", "black"
     double shutter = 0;            ///< part of the frame's time that the shutter is open, 0 … 1
-    int samples = 9;               ///< instants within an open shutter
-    double dispersion = 0;         ///< colour fringes: 0 none, 1 those of true air
+    int samples = 9;               ///< number of instants within an open shutter
+    double dispersion = 0;         ///< colour fringes: 0 none, 1 as strong as in real air
     /// @}
 
-    int threads = 0;       ///< used by each call; 0: all processors
-    std::stop_token stop;  ///< once requested, calls under way and later ones end with a FrameError
+    int threads = 0;       ///< number of threads that each call uses; 0: all processors
+    std::stop_token stop;  ///< once requested, calls in progress and later ones end with a FrameError
 };
 
-/// What one frame brings along.
+/// The input of one frame.
 struct Frame {
     std::span<const float> depth;  ///< width * height values, if Settings::depth_map is set
-    /// Called as each instant of the shutter is done, from the calling thread.
+    /// Called from the calling thread after each instant of the shutter is computed.
     std::function<void(int done, int of)> progress;
 };
 
-/// What a map is off by, measured against bent rays through sampled pixels [px].
+/// The error of a map, measured against bent rays through sampled pixels [px].
 struct MapError {
     int samples = 0;
     double p50 = 0, p95 = 0, largest = 0;
 };
 
-/// Displacement of every pixel.
+/// The displacement of every pixel.
 struct Map {
     int width = 0, height = 0;
-    std::vector<float> uv;              ///< 2 * width * height: u, v of each pixel
-    std::optional<MapError> error;      ///< if it was asked for and something moves
-    std::vector<std::string> warnings;  ///< on this frame
+    std::vector<float> uv;              ///< 2 * width * height values: u, v of each pixel
+    std::optional<MapError> error;      ///< set if the settings ask for it and something moves
+    std::vector<std::string> warnings;  ///< about this frame
 };
 
-/// What a shot will be like, before any frame is made; without falloff, and without surfaces, which bend exactly.
+/// The expected strength of a shot, before any frame is made. Falloff is not included, nor are surfaces.
 struct Expected {
     double shift_rms = 0;  ///< rms of |d| at the background, over pixels and time [px]
-    double focusing = 0;   ///< variance of the focusing of light from there; rays begin to fold near 1
+    double focusing = 0;   ///< variance of the focusing of light from the background; rays begin to fold near 1
 };
 
-/// A shot made ready.
+/// A shot that is ready to be computed.
 class EIKONAL_API Shimmer {
   public:
-    /// Reads the scene and prepares its media. May take seconds; a model "auto" tries several.
+    /// Reads the scene and prepares its media. This may take seconds, since the model "auto" tries several models.
     explicit Shimmer(const Settings& settings);
     ~Shimmer();
     Shimmer(Shimmer&&) noexcept;
     Shimmer& operator=(Shimmer&&) noexcept;
 
-    /// Displacement at a time, in frames; whole numbers are the frames' own.
+    /// The displacement at a time in frames. Times between whole frames are allowed.
     Map map(double frame, const Frame& input = {}) const;
 
-    /// Displaces a picture of linear light: width * height * channels values, `channels` >= 1. Colour with alpha is
-    /// premultiplied. Dispersion acts on the first three channels where there are three or four. `out` is as large as
-    /// `in` and apart from it.
+    /// Displaces a picture in linear light: width * height * channels values, `channels` >= 1. Colour with alpha is
+    /// premultiplied. Dispersion acts on the first three channels of a picture with three or four channels. `out` has
+    /// the size of `in` and must not overlap it.
     void warp(std::span<const float> in, int channels, std::span<float> out, double frame,
               const Frame& input = {}) const;
 
-    /// Worked out at each call.
+    /// The expected strength. It is computed at each call.
     Expected expected() const;
     /// The models in use, in the order of the media; empty if only surfaces bend.
     std::vector<std::string> models() const;
-    /// What multiplies the displacement: the gain, and the scale to Settings::rms.
+    /// The factor on the displacement: the gain times the scale to Settings::rms.
     double gain() const;
-    /// One line each on scene, depth, media, model and strength.
+    /// Notes on scene, depth, media, model and strength, one line each.
     std::vector<std::string> notes() const;
-    /// One line each on what the user should know of the shot.
+    /// What the user should know of the shot, one line each.
     std::vector<std::string> warnings() const;
 
   private:
@@ -149,10 +150,10 @@ class EIKONAL_API Shimmer {
     std::unique_ptr<Shot> shot_;
 };
 
-/// Names of the scenes that come with eikonal.
+/// Names of the scenes that are delivered with eikonal.
 EIKONAL_API std::vector<std::string> preset_names();
 
-/// "1.2.3"
+/// The version, as "1.2.3".
 EIKONAL_API std::string version();
 
 }  // namespace eikonal
