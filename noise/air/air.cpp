@@ -13,9 +13,9 @@
 namespace eikonal {
 namespace {
 
-/// Beyond this change of the index first order says nothing.
+/// Largest change of the index for which the first order is used. Beyond it the first order is no approximation.
 constexpr double kLargestFirstOrder = 0.5;
-/// The sum's n - 1 is held at this in magnitude.
+/// The sum's n - 1 is limited to this in magnitude.
 constexpr double kLargestIndex = 1e100;
 
 void add(IndexSample& a, const IndexSample& b, double weight) {
@@ -44,7 +44,7 @@ AirInstant::AirInstant(const ForceLaw& law, std::vector<AirPart> parts) : law_(l
     for (AirPart& part : parts) (part.instant->has_index() ? indexed_ : forced_).push_back(std::move(part));
 }
 
-/// n and its derivatives, absolute but for n's 1; no derivatives where n <= 0.
+/// n and its derivatives. They are absolute, except that 1 is subtracted from n. The derivatives are 0 where n <= 0.
 template <class Jet, class Take>
 Jet AirInstant::sum(Take&& take) const {
     Jet total{};
@@ -140,7 +140,8 @@ std::optional<StraightBend> AirInstant::straight_bend(const dvec3& x, const dvec
 }
 
 AirInstant::Interpolation AirInstant::interpolation(const dvec3& from, const dvec3& to) const {
-    // Errors at places apart are independent: squares add up, ∫ (1 - s)² g² ds and ∫ g² ds by the midpoint rule.
+    // Errors at distant places are independent, so their squares add up. ∫ (1 - s)² g² ds and ∫ g² ds are computed by
+    // the midpoint rule.
     constexpr int kParts = 32;
     const double distance = glm::distance(from, to);
     double shift = 0, turn = 0;

@@ -13,7 +13,7 @@
 namespace eikonal {
 namespace {
 
-/// What `eikonal field` shows about each blob [σ].
+/// `eikonal field` shows this distance around each blob [σ].
 constexpr double kShownReach = 3;
 
 class Instant final : public MediumInstant {
@@ -40,7 +40,7 @@ class Instant final : public MediumInstant {
     Box shown_box() const override { return shown_; }
 
   private:
-    /// A metre about the origin if there is no blob.
+    /// The box around all blobs, or a metre about the origin if there are none.
     static Box box_around(const std::vector<Blob>& blobs) {
         Box box{dvec3(-0.5), dvec3(0.5)};
         bool any = false;
@@ -56,8 +56,8 @@ class Instant final : public MediumInstant {
 
     BlobInstant blobs_;
     Box shown_;
-    double force_;         ///< F/∇(n - n_ambient) where n is the ambient's
-    double second_order_;  ///< relative error of that, at most, for an n - n_ambient of 1
+    double force_;         ///< F/∇(n - n_ambient) where n is the ambient index
+    double second_order_;  ///< largest relative error of force_ for an n - n_ambient of 1
 };
 
 }  // namespace

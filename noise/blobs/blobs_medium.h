@@ -13,7 +13,7 @@ namespace eikonal {
 
 class BlobsMedium final : public Medium {
   public:
-    /// UserError: as BlobCloud; the blobs of the budget count.
+    /// UserError: as BlobCloud. The blobs are counted in the budget.
     BlobsMedium(const BlobsSpec& spec, const MediumSetting& setting);
 
     std::shared_ptr<const MediumInstant> at(double t, const InstantSettings& settings) const override;
@@ -23,7 +23,7 @@ class BlobsMedium final : public Medium {
 
     const BlobCloud& cloud() const { return cloud_; }
     const BlobsSpec& spec() const { return spec_; }
-    /// Blobs that the caller has found already, as an instant.
+    /// An instant of blobs that the caller has computed already.
     static std::shared_ptr<const MediumInstant> around(const std::vector<Blob>& blobs, const InstantSettings& settings);
 
   private:

@@ -21,20 +21,20 @@ struct Derivatives {
     double n, first, second;
 };
 
-/// From those of n²: n' = (n²)'/(2n), n'' = ((n²)''/2 - n'²)/n.
+/// n and its derivatives from those of n²: n' = (n²)'/(2n), n'' = ((n²)''/2 - n'²)/n.
 Derivatives of_square(double square, double first, double second) {
     if (!(square > 0)) return {0, 0, 0};
     const double n = std::sqrt(square), slope = first / (2 * n);
     return {n, slope, (0.5 * second - slope * slope) / n};
 }
 
-/// Along the unit vector `axis`.
+/// The jet of an index that varies along the unit vector `axis` only.
 IndexJet layered(const Derivatives& f, const dvec3& axis) {
     return {f.n - 1, f.first * axis, f.second * glm::outerProduct(axis, axis)};
 }
 
-/// About a point or line, in the coordinate q = |v|²: ∇n = 2 n' v, Hessian = 2 n' P + 4 n'' v vᵀ, where P is the
-/// projection that made v of x - center.
+/// The jet of an index that varies with the distance from a point or line, in the coordinate q = |v|²: ∇n = 2 n' v,
+/// Hessian = 2 n' P + 4 n'' v vᵀ. P is the projection that gave v from x - center.
 IndexJet round(const Derivatives& f, const dvec3& v, const dmat3& P) {
     return {f.n - 1, 2 * f.first * v, 2 * f.first * P + (4 * f.second) * glm::outerProduct(v, v)};
 }
@@ -49,7 +49,7 @@ Derivatives sech(double n0, double g, double q) {
     const double n = 2 * n0 * e / (1 + e2), g2 = g * g;
     if (!(n > 0)) return {0, 0, 0};
     if (y < 0.1) {
-        // tanh y/y and (d/dy²) of it, by series in z = y²
+        // tanh y/y and its derivative by y², as series in z = y²
         const double z = y * y;
         const double ratio =
             1 - z * (1.0 / 3 - z * (2.0 / 15 - z * (17.0 / 315 - z * (62.0 / 2835 - z * (1382.0 / 155925 -

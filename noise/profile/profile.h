@@ -1,4 +1,4 @@
-/// Absolute refractive indices in closed form, used alone: rays through them are known exactly
+/// Absolute refractive indices in closed form, each used as the only medium. The rays through them are known exactly
 /// (PHYSICS.md#closed-forms, *added*). With s = axis·(x - center), r = |x - center|, ρ = distance to the line through
 /// center along axis:
 ///
@@ -10,8 +10,8 @@
 ///     rod              n² = n0² (1 - g²ρ²)
 ///     sech             n  = n0 sech(gρ)
 ///
-/// Where a formula leaves no index (n² <= 0 or n <= 0) `n - 1` is -1 and the derivatives are zero; beyond
-/// kLargestIndex it is held there. All finite for finite input. The axis is of unit length.
+/// Where a formula gives no index (n² <= 0 or n <= 0), `n - 1` is -1 and the derivatives are zero. The index is limited
+/// to kLargestIndex. All results are finite for finite input. The axis is of unit length.
 #pragma once
 
 #include "noise/math/index_sample.h"
@@ -29,13 +29,13 @@ class Profile {
     /// n - 1 (not n - n_ambient), gradient and Hessian.
     IndexJet jet(const dvec3& x) const;
 
-    /// Length [m] over which the profile changes by its own size, plus, for Luneburg's sphere, the way to it. > 0, may
-    /// be infinite.
+    /// Length [m] over which the profile changes by its own size. For Luneburg's sphere the distance to it is added. >
+    /// 0, may be infinite.
     double scale(const dvec3& x) const;
-    /// Length of the way from x along the unit direction d that lies where n is constant for good: before Luneburg's
-    /// sphere and behind it. 0 elsewhere.
+    /// Distance from x along the unit direction d on which n is constant: before Luneburg's sphere and behind it. 0
+    /// elsewhere.
     double clear_way(const dvec3& x, const dvec3& d) const;
-    /// Length of the way to where F jumps: the sphere's surface, the plane or cylinder at which n vanishes.
+    /// Distance to the next place where F jumps: the sphere's surface, or the plane or cylinder at which n vanishes.
     double way_to_edge(const dvec3& x, const dvec3& d) const;
 
   private:

@@ -1,5 +1,5 @@
-/// [[medium]] type = "profile": the absolute index of all space in closed form, for validation. A profile is used
-/// alone. PHYSICS.md#closed-forms
+/// [[medium]] type = "profile": the absolute index of all space in closed form, for validation. A profile must be the
+/// only medium of a scene. PHYSICS.md#closed-forms
 #pragma once
 
 #include <glm/vec3.hpp>

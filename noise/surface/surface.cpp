@@ -12,19 +12,19 @@
 namespace eikonal {
 namespace {
 
-/// 1 - e^{-x} for x >= 0, to a few 1e-16 relative.
+/// 1 - e^{-x} for x >= 0, with a relative error of a few 1e-16.
 double one_minus_exp(double x) {
     if (x > 0.5) return 1 - portable::exp(-x);
-    // x (1 - x/2 (1 - x/3 (…))): the first term left out is below 1e-17 of the sum
+    // x (1 - x/2 (1 - x/3 (…))). The first term left out is below 1e-17 of the sum.
     double sum = 1;
     for (int k = 16; k >= 2; --k) sum = 1 - x / k * sum;
     return x * sum;
 }
 
-/// T_a + D is T without loss as long as T_a is not many times T_S: within this, to 1e-14 relative.
+/// T_a + D gives T without loss of digits unless T_a is many times T_S. Within this ratio the relative error is 1e-14.
 constexpr double kPlainRatio = 16;
 
-/// asin s for 0 <= s <= 1/√2, by Newton's method on the sine.
+/// asin s for 0 <= s <= 1/√2, by Newton's method applied to the sine.
 double arcsine(double s) {
     double x = s * (1 + s * s * (1.0 / 6));
     for (int i = 0; i < 5; ++i) {
@@ -48,11 +48,11 @@ SurfaceIndex::SurfaceIndex(const SurfaceSpec& spec, const IndexLaw& law)
       inverse_ambient_(1 / ambient_),
       scale_(law.refractivity * law.T0),
       plain_(ambient_ <= kPlainRatio * surface_) {
-    // |n - n_a| ∝ e/(T_a + excess e) falls to kNegligibleIndex of itself at e = kNegligibleIndex T_a/(T_S - …).
+    // |n - n_a| ∝ e/(T_a + excess e) has fallen to the part kNegligibleIndex at e = kNegligibleIndex T_a/(T_S - …).
     const double part = (surface_ - kNegligibleIndex * excess_) / (kNegligibleIndex * ambient_);
     top_ = dropoff_ * std::max(0.0, portable::log(part));
     knee_ = dropoff_ * std::max(0.0, portable::log(surface_ / ambient_));
-    // |D|/T² has its only maximum at T = 2 T_a (D = T_a), if the surface is hotter, else at the surface.
+    // |D|/T² is largest at T = 2 T_a (D = T_a) if the surface is hotter than that, else at the surface.
     largest_slope_ = surface_ > 2 * ambient_ ? scale_ / (4 * ambient_ * dropoff_) : std::abs(slope(0));
 }
 

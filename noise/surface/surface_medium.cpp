@@ -11,9 +11,9 @@
 namespace eikonal {
 namespace {
 
-/// A step changes the height by at most this part of the dropoff.
+/// A step changes the height by at most this part of the dropoff d0.
 constexpr double kPartOfDropoff = 0.25;
-/// Height over the surface that `eikonal field` shows [dropoff].
+/// Height above the surface up to which `eikonal field` shows it [dropoff].
 constexpr double kShownHeight = 8;
 
 class Instant final : public MediumInstant {
@@ -27,7 +27,7 @@ class Instant final : public MediumInstant {
 
     IndexSample sample(const dvec3& x) const override { return index_.sample(x); }
     IndexJet jet(const dvec3& x) const override { return index_.jet(x); }
-    /// The change of height that is allowed grows above the knee. Over s metres of way the height changes by at most
+    /// The allowed change of height grows above the knee. Over s metres of the ray the height changes by at most
     /// climb s + largest_force s²/2.
     double longest_step(const dvec3& x, const dvec3& d) const override {
         const double h = index_.height(x), within = std::clamp(h, 0.0, index_.top());
@@ -35,7 +35,7 @@ class Instant final : public MediumInstant {
         const double climb = std::abs(index_.climb(d));
         return std::abs(h - within) + 2 * change / (climb + std::sqrt(climb * climb + 2 * largest_force_ * change));
     }
-    /// Along the normal, the steepest direction.
+    /// Taken along the normal, the steepest direction.
     double longest_step(const dvec3& x) const override { return longest_step(x, index_.normal()); }
     double clear_way(const dvec3& x, const dvec3& d) const override {
         return way_into_layer(index_.height(x), index_.climb(d), 0, index_.top());
@@ -53,7 +53,7 @@ class Instant final : public MediumInstant {
   private:
     SurfaceIndex index_;
     SurfaceSpec spec_;
-    double part_;           ///< of the dropoff
+    double part_;           ///< largest change of height in a step [dropoff]
     double largest_force_;  ///< [1/m]
 };
 
