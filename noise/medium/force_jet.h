@@ -8,11 +8,11 @@ namespace eikonal {
 
 using glm::dvec3;
 
-/// F and how it changes with the ray's position and direction.
+/// F and its derivatives with respect to the ray's position and direction.
 struct ForceJet {
     dvec3 force{0, 0, 0};
     glm::dmat3 by_position{0};   ///< ∂F_i/∂x_j at [j][i]
-    glm::dmat3 by_direction{0};  ///< ∂F_i/∂p_j at [j][i]: thin screens only
+    glm::dmat3 by_direction{0};  ///< ∂F_i/∂p_j at [j][i]: nonzero for thin screens only
 };
 
 }  // namespace eikonal

@@ -1,4 +1,4 @@
-/// A plane that bounds the air from below: where it is, and how high a point stands over it.
+/// A plane that bounds the air from below, and the height of a point above it.
 #pragma once
 
 #include <glm/geometric.hpp>

@@ -1,4 +1,5 @@
-/// Which values a number of a scene may have: finite ones, within the limits of noise/medium/number_limits.h or closer.
+/// The values that a number of a scene may have. They are finite and within the limits of noise/medium/number_limits.h,
+/// or within narrower ones.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +10,12 @@
 
 namespace eikonal {
 
-/// Values allowed for a number, both ends included.
+/// The values allowed for a number, both ends included.
 struct Range {
     double lo = -kLargestValue, hi = kLargestValue;
 
     bool contains(double v) const { return v >= lo && v <= hi; }
-    /// What a message says of a value outside: "must be > 0", "must be >= 0 and <= 1", …
+    /// The words of a message about a value outside: "must be > 0", "must be >= 0 and <= 1", …
     std::string text(double v) const;
 };
 
@@ -35,7 +36,7 @@ inline Range any_seed() {
     return {0, 0x1p63};
 }
 
-/// Ranges of the numbers of an array. The last one holds for all that follow. Never empty.
+/// Ranges of the numbers of an array. The last one holds for all numbers that follow. Never empty.
 using Ranges = std::vector<Range>;
 
 /// The range of number i.

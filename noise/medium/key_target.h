@@ -1,9 +1,10 @@
-/// The program's side of a key: the variable that the key sets, without its type.
+/// The variable that a key of a scene file sets, without its type.
 ///
-/// A target can be read from a file and looked at. Programs that show the keys of a scene, as lists or as sliders,
-/// look. Types: bool, int, std::uint64_t, double, std::string, path, dvec3, std::array of int or double, an enumeration
-/// with names(), a struct with keys(), and std::optional or std::vector of these. names() and keys() are found by
-/// argument-dependent lookup. A type that is read in another way has its own read_value(KeyReader&, T&, const Ranges&).
+/// A target can be read from a file, and its value can be shown. Programs show the keys of a scene as lists or as
+/// sliders. Types: bool, int, std::uint64_t, double, std::string, path, dvec3, std::array of int or double, an
+/// enumeration with names(), a struct with keys(), and std::optional or std::vector of these. names() and keys() are
+/// found by argument-dependent lookup. A type that is read in another way has its own
+/// read_value(KeyReader&, T&, const Ranges&).
 #pragma once
 
 #include <array>
@@ -24,10 +25,10 @@
 
 namespace eikonal {
 
-/// What kind of value a key has. A choice is one word of a list. A table has keys of its own.
+/// The kind of value that a key has. A choice is one word of a list. A table has keys of its own.
 enum class ValueKind { Boolean, WholeNumber, Number, Text, File, Choice, Table, Tables };
 
-/// What a scene file says for each value of an enumeration E: the type of names(E{}).
+/// The words of a scene file for the values of an enumeration E: the type of names(E{}).
 template <class E>
 using EnumNames = std::span<const std::pair<std::string_view, E>>;
 
@@ -38,19 +39,19 @@ class KeyTarget {
   public:
     virtual ~KeyTarget() = default;
 
-    /// Sets the variable. Throws UserError.
+    /// Sets the variable. UserError: the value is not valid.
     virtual void read(KeyReader& reader, const Ranges& ranges) const = 0;
 
     virtual ValueKind kind() const = 0;
-    /// How many numbers the value is made of: 1, or the length of an array.
+    /// Number of numbers that the value consists of: 1, or the length of an array.
     virtual std::size_t size() const { return 1; }
     /// Whether the variable may be without a value.
     virtual bool optional() const { return false; }
-    /// The value as a scene file states it, words and text without quotes. Empty if there is none, and for tables.
+    /// The value as it stands in a scene file, words and text without quotes. Empty for no value and for tables.
     virtual std::string text() const { return {}; }
     /// The words of a choice.
     virtual std::vector<std::string_view> words() const { return {}; }
-    /// Visits the keys of the table, or of each table of an array. If there is none, visits those of a table with
+    /// Visits the keys of the table, or of each table of an array. If there is no table, visits those of a table with
     /// default values, unless its type has no defaults.
     virtual void visit_tables(const TableVisitor&) const {}
 };
@@ -66,7 +67,7 @@ struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::true_type {};
 
-/// How many numbers a value has, and their type.
+/// The number of numbers in a value, and their type.
 template <class T>
 struct NumbersOf {
     using Number = T;
@@ -121,7 +122,7 @@ std::vector<std::string_view> words_of() {
     return words;
 }
 
-/// The word of a value; empty if the list of names has none.
+/// The word for a value; empty if the list of names has none.
 template <class E>
 std::string_view word_of(E value) {
     for (const auto& [word, v] : names(E{}))
@@ -158,7 +159,7 @@ void read_value(KeyReader& reader, T& target, const Ranges& ranges) {
     }
 }
 
-// ---- looking ----
+// ---- showing ----
 
 std::string value_text(bool value);
 std::string value_text(int value);

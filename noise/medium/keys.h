@@ -1,9 +1,9 @@
 /// The keys of a table of a scene file: one list per table, which states for each key its name, meaning, unit, target,
 /// range and rules. Defaults are what the targets hold before a file is read.
 ///
-/// Each struct of parameters has a function `Keys keys(Spec&)` in its own namespace, and each enumeration `names(E)`,
-/// the words of its values. Whoever reads files (KeyReader) or shows keys to people finds them there. Nothing here
-/// depends on the format of the file. A list refers to its struct, which must outlive it.
+/// Each struct of parameters has a function `Keys keys(Spec&)` in its own namespace. Each enumeration has `names(E)`,
+/// the words of its values. Code that reads files (KeyReader) and code that shows keys to people both use them. Nothing
+/// here depends on the format of the file. A list refers to its struct, which must outlive it.
 #pragma once
 
 #include <functional>
@@ -20,8 +20,8 @@
 
 namespace eikonal {
 
-/// What a number is and its unit, for instance {"height of the camera", "m"}. The unit is empty if the number has none
-/// or the meaning says it in words.
+/// The meaning of a number and its unit, for instance {"height of the camera", "m"}. The unit is empty if the number
+/// has none or if the meaning contains it.
 struct Quantity {
     std::string_view meaning, unit;
 };
@@ -31,7 +31,7 @@ using Quantities = std::vector<Quantity>;
 
 class Key {
   public:
-    /// Text must outlive the key: literals. The target's type is one that noise/medium/key_target.h names.
+    /// The texts must outlive the key; use literals. The target has a type that noise/medium/key_target.h lists.
     template <class T>
     Key(std::string_view name, std::string_view meaning, T& target, Ranges ranges = default_ranges<T>())
         : Key(name, Quantities{{meaning, ""}}, target, std::move(ranges)) {}
@@ -47,7 +47,7 @@ class Key {
     Key(std::string_view name, Quantities quantities, std::shared_ptr<const KeyTarget> target, Ranges ranges = {any()})
         : name_(name), quantities_(std::move(quantities)), ranges_(std::move(ranges)), target_(std::move(target)) {}
 
-    /// What follows the unit in the help text.
+    /// Sets the text that follows the unit in the help.
     Key& note(std::string_view text) {
         note_ = text;
         return *this;
@@ -55,24 +55,24 @@ class Key {
 
     // ---- rules ----
 
-    /// What must hold if the key is given: returns what is wrong, empty if nothing is.
+    /// Adds a rule for a key that is given. A rule returns what is wrong, or an empty text.
     Key& given(std::function<std::string()> rule) { return add(given_, std::move(rule)); }
-    /// The same whether the key is given or not. May also bring the target into its final form.
+    /// Adds a rule that is also applied if the key is left out. It may bring the target into its final form.
     Key& always(std::function<std::string()> rule) { return add(always_, std::move(rule)); }
-    /// If the key is left out: sets its default, where that derives from other keys. Runs before any rule.
+    /// Sets the default of a key that is left out, if it follows from other keys. This runs before any rule.
     Key& otherwise(std::function<void()> set_default) {
         default_ = std::move(set_default);
         return *this;
     }
-    /// It may not be left out.
+    /// Makes it an error to leave the key out.
     Key& required() {
         required_ = true;
         return *this;
     }
-    /// Applies only while the other key has one of these values.
+    /// The key applies only while the other key has one of these values.
     template <class E>
     Key& only_with(std::string_view other, const E& value, std::vector<E> allowed);
-    /// Applies only without the other key.
+    /// The key applies only if the other key is left out.
     template <class T>
     Key& excludes(std::string_view other, const std::optional<T>& value) {
         return given([other, &value] {
@@ -82,27 +82,27 @@ class Key {
 
     // ---- for readers ----
 
-    /// Sets the target. Throws UserError.
+    /// Sets the target. UserError: the value is not valid.
     void read(KeyReader& reader) const { target_->read(reader, ranges_); }
-    /// To be called if the key is left out.
+    /// Sets the default. To be called if the key is left out.
     void set_default() const {
         if (default_) default_();
     }
     bool is_required() const { return required_; }
-    /// The first rule that does not hold, empty if all do. To be called once every key is read.
+    /// The message of the first broken rule; empty if none is broken. To be called after every key has been read.
     std::string broken_rule(bool key_is_given) const;
 
-    // ---- for those who look ----
+    // ---- for programs that show keys ----
 
     std::string_view name() const { return name_; }
-    /// Of number i.
+    /// The meaning of number i.
     std::string_view meaning(std::size_t i = 0) const { return quantity(i).meaning; }
     std::string_view unit(std::size_t i = 0) const { return quantity(i).unit; }
     const Range& range(std::size_t i = 0) const { return range_of(ranges_, i); }
-    /// One line: meanings, units in brackets and the note, for instance "diameter of the lens [m]; 0 is a point". A
-    /// unit is said once for neighbours that share it.
+    /// One line with the meanings, the units in brackets and the note, for instance "diameter of the lens [m]; 0 is a
+    /// point". Neighbours that share a unit have it once.
     std::string help() const;
-    /// Kind, number of numbers, current value, words and tables.
+    /// The target, which tells kind, number of numbers, current value, words and tables.
     const KeyTarget& target() const { return *target_; }
 
   private:
@@ -135,7 +135,7 @@ Key& Key::only_with(std::string_view other, const E& value, std::vector<E> allow
     });
 }
 
-/// A vector of which only the direction counts. It may not be zero, and is normalised.
+/// A vector of which only the direction matters. It must not be zero, and is normalised.
 Key direction_key(std::string_view name, std::string_view meaning, glm::dvec3& target);
 
 }  // namespace eikonal

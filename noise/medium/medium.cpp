@@ -6,7 +6,7 @@
 namespace eikonal {
 namespace {
 
-/// A stride is so many longest steps.
+/// Length of a stride in longest steps.
 constexpr double kStride = 2;
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// The kinds of medium that a program knows: what `type` of a [[medium]] may be.
+/// The kinds of medium that a program knows: the possible values of `type` of a [[medium]].
 ///
 /// The list is made by CMake: one call of eikonal_medium() in noise/CMakeLists.txt registers a kind.
 #pragma once
@@ -12,8 +12,8 @@
 namespace eikonal {
 
 struct MediumKind {
-    std::string_view type;     ///< as the scene file's `type`
-    MediumSpec (*defaults)();  ///< parameters of a table without keys
+    std::string_view type;     ///< the value of `type` in the scene file
+    MediumSpec (*defaults)();  ///< the parameters of a table without other keys
 };
 
 template <MediumParameters P>
@@ -21,7 +21,7 @@ MediumKind make_kind() {
     return {P::kType, [] { return MediumSpec(P{}); }};
 }
 
-/// In the order of registration.
+/// The kinds in the order of registration.
 std::span<const MediumKind> medium_kinds();
 
 }  // namespace eikonal

@@ -1,16 +1,16 @@
-/// One [[medium]] of a scene, of whatever kind: its parameters, and what can be asked of them before anything is built.
+/// One [[medium]] of a scene, of any kind: its parameters, and what follows from them before anything is built.
 ///
-/// A kind of medium is a struct P of parameters and a few functions beside it, the hooks, which MediumSpec finds by
-/// argument-dependent lookup:
+/// A kind of medium is a struct P of parameters and some functions beside it, the hooks. MediumSpec finds them by
+/// argument-dependent lookup. Every kind has:
 ///     P::kType                                  its `type` in the scene file
 ///     keys(P&)                                  its keys, with ranges, units and defaults (noise/medium/keys.h)
-///     why_still(const P&, const OpticsSpec&)    why it bends no light, empty if it may: the one test of strength
+///     why_still(const P&, const OpticsSpec&)    why it bends no light, empty if it may: the only test of strength
 ///     build_medium(const P&, const MediumSetting&)   the medium of a shot (noise/medium/medium.h); UserError
-/// and where they apply
-///     P::kAbsoluteIndex = true                  its index is absolute, and it stands alone in a scene
+/// Some kinds have:
+///     P::kAbsoluteIndex = true                  its index is absolute, and it must be the only medium of a scene
 ///     mix_seeds(P&, const RandomStream&)        makes its seeds depend on the scene's
-///     mirage_ground(const P&, const OpticsSpec&)     the plane over which it makes mirages, if it does
-/// MediumSpec is a value: a copy is a copy of the parameters.
+///     mirage_ground(const P&, const OpticsSpec&)     the plane over which it makes mirages, if it makes any
+/// MediumSpec is a value. A copy of it has a copy of the parameters.
 #pragma once
 
 #include <concepts>
@@ -92,7 +92,7 @@ class MediumSpec {
     }
     ~MediumSpec() = default;
 
-    /// The parameters if they are of kind P, else null.
+    /// The parameters, if they are of kind P; else null.
     template <class P>
     const P* get_if() const {
         const auto* held = dynamic_cast<const detail::Held<P>*>(held_.get());
@@ -106,11 +106,11 @@ class MediumSpec {
 
     std::string_view type() const { return held_->type(); }
     bool has_absolute_index() const { return held_->has_absolute_index(); }
-    /// The keys of its table but `type`; they point to the parameters in this object.
+    /// The keys of its table, except `type`. They point to the parameters in this object.
     Keys keys() { return held_->list_keys(); }
     /// Why it bends no light under these optics; empty if it may.
     std::string why_still(const OpticsSpec& optics) const { return held_->still(optics); }
-    /// Never null. UserError: what the kind refuses.
+    /// Builds the medium; never null. UserError: what the kind refuses.
     std::unique_ptr<const Medium> build(const MediumSetting& setting) const { return held_->build(setting); }
     void mix_seeds(const RandomStream& stream) { held_->mix(stream); }
     /// The plane over which it makes mirages; none if it makes none.

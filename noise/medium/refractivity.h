@@ -4,14 +4,14 @@
 ///     (n - 1)/(n0 - 1) = T0/T   at constant pressure (Eq. 3)
 ///     paper: n0 = 1.00023, T0 = 273 K (*paper*).   air: Ciddor's n at 15 °C, T0 = 288.15 K (*added*, the default).
 ///
-/// Only n - 1 is ever stored. Range: T > 0 [K]; wavelengths 0.3 … 1.7 µm.
+/// Only n - 1 is stored, never n. Range: T > 0 [K]; wavelengths 0.3 … 1.7 µm.
 #pragma once
 
 #include "noise/medium/optics.h"
 
 namespace eikonal {
 
-/// Temperatures that scenes may state [K]: above, air is plasma, and below it is solid.
+/// Range of the temperatures that scenes may state [K]. Hotter air is plasma, and colder air is solid.
 inline constexpr double kLeastTemperature = 1, kGreatestTemperature = 1e9;
 
 /// Wavelengths that stand for the three colour channels [µm].
@@ -23,8 +23,8 @@ constexpr double ciddor_refractivity(double lambda) {
     return 0.05792105 / (238.0185 - inverse2) + 0.00167917 / (57.362 - inverse2);
 }
 
-/// Displacement of a channel relative to green: (n - 1)/(n_550 - 1), exaggerated about 1 by `dispersion` (0 off, 1
-/// true).
+/// Displacement of a channel relative to green. It is (n - 1)/(n_550 - 1), with its difference from 1 multiplied by
+/// `dispersion` (0 off, 1 as in real air).
 constexpr double dispersion_scale(double lambda, double dispersion) {
     return 1 + dispersion * (ciddor_refractivity(lambda) / ciddor_refractivity(kGreenWavelength) - 1);
 }
@@ -38,13 +38,13 @@ struct IndexLaw {
     /// n - 1 at T.
     constexpr double at(double T) const { return refractivity * (T0 / T); }
     constexpr double ambient() const { return at(ambient_temperature); }
-    /// n(T) - n_ambient, without cancellation: negative for hot air.
+    /// n(T) - n_ambient, computed without cancellation. It is negative for hot air.
     constexpr double above_ambient(double T) const {
         return refractivity * (T0 / T) * ((ambient_temperature - T) / ambient_temperature);
     }
 };
 
-/// lambda [µm] is used by the index of air only.
+/// lambda [µm] matters for IndexModel::Air only.
 constexpr IndexLaw index_law(const OpticsSpec& optics, double lambda = kGreenWavelength) {
     if (optics.index == IndexModel::Paper) return {0.00023, 273, optics.ambient_temperature};
     return {ciddor_refractivity(lambda), 288.15, optics.ambient_temperature};
