@@ -10,8 +10,8 @@ namespace eikonal::reference {
 namespace {
 
 struct Figures {
-    std::size_t ended = 0;                 ///< rays; error and displacement are theirs
-    double steps = 0, error = 0, rms = 0;  ///< means
+    std::size_t ended = 0;                 ///< number of rays that ended; error and displacement are theirs
+    double steps = 0, error = 0, rms = 0;  ///< means over the rays
     double largest = 0;
 };
 

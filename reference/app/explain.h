@@ -1,10 +1,14 @@
-/// `render --explain`: what frames need, before any is rendered. Nothing is written.
+/// `render --explain`: reports what frames need, before any is rendered. Nothing is written.
 ///
-/// Displacement, steps, error and time are of a probe (ProbeLimits in render.h): pixels spread over the first frame, as
-/// many as kExplainedSeconds suffice for, up to kMostExplained. So it takes seconds whatever the scene: rays that do
-/// not end within the probe's steps are counted, and taken to go on, at what the air ahead costs, to where the straight
-/// ones end, or to their budget. Displacement and error are of the rays that came to an end, or said to be unknown. The
-/// times are this machine's, now; memory is what the process has come to hold, and what a frame's planes take.
+/// Displacement, steps, error and time are measured by a probe (ProbeLimits in render.h). The probe takes pixels spread
+/// over the first frame, as many as fit into kExplainedSeconds, but at most kMostExplained. It therefore takes only
+/// seconds in any scene.
+///
+/// Some rays do not end within the probe's steps. They are counted. Each is assumed to go on to where the straight ray
+/// ends, at the cost of the air ahead, but no farther than its budget. Displacement and error are those of the rays
+/// that ended. If none ended they are reported as unknown.
+///
+/// The times are of this machine at this moment. The memory is that of the process so far, and of a frame's planes.
 #pragma once
 
 #include <vector>
@@ -16,7 +20,7 @@ namespace eikonal::reference {
 inline constexpr double kExplainedSeconds = 2;
 inline constexpr int kMostExplained = 8192, kExplainedSamples = 16, kExplainedSteps = 20000;
 
-/// Prints it on stdout. threads: in use. FrameError as Renderer::render.
+/// Prints the report on stdout. threads: the number in use. FrameError as Renderer::render.
 void explain(const Renderer& renderer, const Scene& scene, const RenderSettings& settings,
              const std::vector<int>& frames, int threads);
 

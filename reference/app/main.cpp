@@ -1,4 +1,4 @@
-/// eikonal-trace: declare options, validate, run, report. Exit statuses as in reference/README.md.
+/// eikonal-trace: main declares options, validates them, runs and reports. Exit statuses as in reference/README.md.
 #include <fmt/format.h>
 
 #include "reference/app/commands.h"

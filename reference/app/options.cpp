@@ -19,7 +19,7 @@ std::vector<std::string_view> integrator_names() {
     return names;
 }
 
-/// CLI::Range lets NaN pass.
+/// A range that also rejects NaN, which CLI::Range accepts.
 CLI::Validator within(double low, double high) {
     const auto check = [=](std::string& text) -> std::string {
         double value = 0;
@@ -72,7 +72,7 @@ void add_integrator(CLI::App& command, RaySettings& rays) {
         ->type_name("N");
 }
 
-/// Exactness of a picture.
+/// Adds the options for the accuracy of a picture.
 void add_quality(CLI::App& command, RaySettings& rays, int& samples) {
     add_integrator(command, rays);
     command.add_option("--tolerance", rays.tolerance_px, "largest error of the displacement [px]")
@@ -90,7 +90,7 @@ void add_frames(CLI::App& command, std::string& frames) {
         ->type_name("LIST");
 }
 
-/// X,Y,Z
+/// A vector from the text X,Y,Z.
 dvec3 vector_of(const std::string& option, const std::string& text) {
     std::vector<std::string> parts = CLI::detail::split(text, ',');
     dvec3 v{0};

@@ -1,4 +1,4 @@
-/// `eikonal-trace compare`: the warp against the tracer, on frames of a scene.
+/// `eikonal-trace compare`: compares the warp with the tracer on frames of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ void make_folder(const std::filesystem::path& folder) {
                                     error ? error.message() : ""));
 }
 
-/// The scene that a folder's table is headed by.
+/// The name of the scene at the head of a folder's table.
 std::string compared_scene(const std::filesystem::path& folder) {
     std::ifstream table(folder / "errors.txt");
     std::string name;
@@ -32,7 +32,7 @@ std::string compared_scene(const std::filesystem::path& folder) {
     return name.empty() ? "something else" : name;
 }
 
-/// Models' refusals with settings spelled as options.
+/// The comparison, with settings spelled as options in the reasons why models do not apply.
 Comparison in_words_of_the_program(Comparison comparison) {
     for (ModelResult& model : comparison.models) model.refusal = with_options(model.refusal);
     return comparison;
@@ -43,7 +43,7 @@ Comparison in_words_of_the_program(Comparison comparison) {
 int run(const CompareOptions& o, const std::stop_token& stop) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
     std::vector<int> frames = o.frames.empty() ? std::vector{scene.time.first_frame} : parse_frames(o.frames);
-    std::sort(frames.begin(), frames.end());  // in the order of time, however they are listed
+    std::sort(frames.begin(), frames.end());  // in order of time, however the user lists them
     const std::filesystem::path page = o.output / "index.html";
     CompareSettings settings = o.compare;
     settings.stop = stop;

@@ -1,4 +1,4 @@
-/// `eikonal-trace path`: one bent ray as numbers.
+/// `eikonal-trace path`: writes one bent ray as numbers.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -34,7 +34,7 @@ const char* ending(const BentHit& end) {
 int run(const PathOptions& o, const std::stop_token&) {
     const Scene scene = read_scene(o.common.scene, o.common.settings, o.common.seed);
     const SceneAir air(scene, o.rays, {o.length, o.tolerance, false});
-    // From the surface itself a ray may start.
+    // A ray may start on the surface itself.
     if (const auto below = air.below_surface(o.origin); below && below->depth > 0)
         throw UserError(fmt::format(
             "--origin {:g},{:g},{:g}: is {:g} m below the surface of medium.{}, where there is no air; it must "
@@ -46,7 +46,7 @@ int run(const PathOptions& o, const std::stop_token&) {
     trace.tolerance_px = o.tolerance;
     trace.u_end = o.length;
     trace.step_budget = o.rays.step_budget;
-    trace.end_trapped = false;  // its length is given
+    trace.end_trapped = false;  // the length of the ray is given
     std::optional<Geometry> geometry;
     if (!scene.objects.empty()) geometry.emplace(scene, o.origin);
     const AirInstant field = air.at(o.frame.value_or(scene.time.first_frame));

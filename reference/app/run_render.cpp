@@ -1,4 +1,4 @@
-/// `eikonal-trace render`: frames of a scene, with straight or bent rays.
+/// `eikonal-trace render`: renders frames of a scene with straight or bent rays.
 #include <fmt/format.h>
 #include <tbb/info.h>
 
@@ -18,10 +18,10 @@
 namespace eikonal::reference {
 namespace {
 
-/// Times the tolerance that a pixel's error is told from: twice for steps, whose estimates are pessimistic, and what a
-/// spline made for the tolerance adds.
+/// A pixel whose error exceeds this many tolerances is reported. The estimate of the steps' error is pessimistic, which
+/// accounts for a factor of 2. The error of a spline that was made for the tolerance is added.
 constexpr double kWarnedError = 3;
-/// Part of the rays tried that may have no end before a frame's user is warned.
+/// The user is warned if a larger part than this of the tried rays may have no end.
 constexpr double kManyWithoutEnd = 0.05;
 
 using Clock = std::chrono::steady_clock;
@@ -34,7 +34,7 @@ FilePattern checked_pattern(const RenderOptions& o, std::size_t frame_count) {
     return pattern;
 }
 
-/// What of a frame its user should know.
+/// Reports what the user should know of a frame.
 void report(const RenderOptions& o, const RenderedFrame& frame, int number, double seconds) {
     const auto warn = [&](std::size_t pixels, std::string_view what) {
         if (pixels > 0)
@@ -44,7 +44,7 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
          "hold rays that go round and round (id -1, black): the media are too strong");
     warn(frame.unfinished(), "hold rays that the step budget ended (id -3, black); --step-budget raises it");
     warn(frame.without_index(), "hold rays that came to where n <= 0 (id -2, black); lower [optics] exaggeration");
-    // of pixels that show something
+    // Counts of the pixels that show something.
     std::size_t beyond = 0, shown = 0;
     float farthest = 0;
     double errors = 0;
@@ -72,7 +72,7 @@ void report(const RenderOptions& o, const RenderedFrame& frame, int number, doub
                seconds, mean(frame.steps), errors / static_cast<double>(std::max<std::size_t>(shown, 1)));
 }
 
-/// Says at once what would only show after a long time.
+/// Warns at once of what would otherwise show only after a long time.
 void warn(const RenderOptions& o, int frame, const Renderer& renderer, const Probe& probe) {
     const auto many = [&](std::size_t rays) {
         return static_cast<double>(rays) >= kManyWithoutEnd * static_cast<double>(probe.pixels.width);
@@ -103,7 +103,7 @@ void warn(const RenderOptions& o, int frame, const Renderer& renderer, const Pro
 RenderedFrame render(const Renderer& renderer, const RenderOptions& o, int frame) {
     std::optional<TileProgress> progress;
     const auto begin = [&](const std::string& what, int parts) {
-        progress.reset();  // clears its line
+        progress.reset();  // clears the line of the progress
         progress.emplace(fmt::format("frame {}{}", frame, what), parts);
     };
     FrameWatch watch;
@@ -143,7 +143,7 @@ int run(const RenderOptions& o, const std::stop_token& stop) {
                 fmt::print(stderr, "frame {}: warning: the camera is inside object.{}{}\n", frame, *object,
                            name.empty() ? "" : fmt::format(" \"{}\"", name));
             }
-            const AtomicFile place(file);  // fails now rather than after the work if the file cannot be put there
+            const AtomicFile place(file);  // fails before the work, rather than after, if the file cannot be created
             const auto start = Clock::now();
             const RenderedFrame rendered = render(renderer, o, frame);
             write_frame(file, rendered, o.compact ? Storage::Compact : Storage::Exact);

@@ -1,4 +1,4 @@
-/// Progress of one frame: a line with the time left, rewritten on a terminal, silent elsewhere.
+/// Progress of one frame: a line with the time left. It is rewritten on a terminal; there is no output elsewhere.
 #pragma once
 
 #include <chrono>
@@ -10,12 +10,12 @@ namespace eikonal::reference {
 class TileProgress {
   public:
     TileProgress(std::string what, int tiles);
-    /// Clears its line.
+    /// Clears the line.
     ~TileProgress();
     TileProgress(const TileProgress&) = delete;
     TileProgress& operator=(const TileProgress&) = delete;
 
-    /// One more tile is done. Thread-safe.
+    /// Counts one more finished tile. Thread-safe.
     void tile_done();
 
   private:

@@ -55,7 +55,7 @@ ShotSettings shot_settings(const Scene& scene, std::optional<Model> model, const
     return settings;
 }
 
-/// Depth as the warp takes it from the plate's channel Z.
+/// Depth as the warp would read it from the plate's channel Z.
 DepthPlane depth_plane(const RenderedFrame& plate, const PixelWindow& window, const Background& background) {
     std::vector<float> metres = plate.depth;
     for (float& z : metres) z = z < kInfiniteDepth ? std::max(z, kNearestDepth) : static_cast<float>(background.far);
@@ -63,7 +63,7 @@ DepthPlane depth_plane(const RenderedFrame& plate, const PixelWindow& window, co
     return {window, std::move(metres)};
 }
 
-/// One flag a pixel.
+/// One flag a pixel: whether it is near a silhouette.
 std::vector<std::uint8_t> near_silhouettes(const RenderedFrame& plate, const RenderedFrame& truth,
                                            Projection projection) {
     const std::vector<int> distance = silhouette_distance(plate.depth, plate.width, plate.height, projection);
@@ -91,16 +91,16 @@ void map(const eikonal::Shot& shot, int frame, const SharedDepth& depth, ModelFr
     shot.map(frame, depth, window, into.uv.data());
 }
 
-/// A row of the table, and what its figures are made from.
+/// A row of the table, and what its figures are computed from.
 struct Contender {
     ModelResult result;
-    std::optional<Model> model;           ///< asked for
-    std::unique_ptr<eikonal::Shot> shot;  ///< none: the plate itself, or a model that does not apply
+    std::optional<Model> model;           ///< the model asked for
+    std::unique_ptr<eikonal::Shot> shot;  ///< null for the plate itself, and for a model that does not apply
     std::vector<float> smooth, silhouettes, temporal;
     std::vector<double> map_seconds, warp_seconds, stated;
     std::vector<PictureError> pictures;
 
-    /// Fills uv and warped, and times it.
+    /// Computes uv and warped of a frame, and measures the time.
     void answer(int frame, const SharedDepth& depth, const std::vector<float>& plate, ModelFrame& into) {
         const PixelWindow& window = std::get<DepthPlane>(depth).window();
         into.uv.assign(2 * window.area(), 0);
@@ -132,7 +132,7 @@ struct Contender {
         }
         pictures.push_back(picture_error(truth.color, answer.warped, truth.width, truth.height));
     }
-    /// From one frame to the next.
+    /// Compares the change of displacement from one frame to the next with the true change.
     void judge_change(const RenderedFrame& truth_before, const RenderedFrame& truth, const ModelFrame& before,
                       ModelFrame& now) {
         now.change.assign(truth.id.size(), -1);
@@ -185,7 +185,7 @@ Contender contender(std::string_view name) {
     return c;
 }
 
-/// The plate itself, each model, and the default where it is none of them.
+/// The rows of the table: the plate itself, each model, and the default if it is none of these.
 std::vector<Contender> contenders(const Scene& scene, const CompareSettings& settings) {
     const std::vector<std::string>& wanted = settings.models;
     const auto is_wanted = [&](std::string_view name) {
@@ -238,10 +238,10 @@ std::vector<Contender> contenders(const Scene& scene, const CompareSettings& set
 struct Comparer::Shot {
     Scene scene;
     CompareSettings settings;
-    Background sky;  ///< as the warp has it
+    Background sky;  ///< the same as in the warp
     std::vector<Contender> contenders;
     Renderer plate, centers, picture;
-    std::vector<Frame> frames;  ///< at most two: the one before, the one added last
+    std::vector<Frame> frames;  ///< the last one added and, if there is one, the one before it
     std::vector<int> numbers;
     std::vector<double> tracer_seconds, picture_seconds;
     double pixels = 0, edges = 0, background = 0, answers = 0, squares = 0, largest = 0, estimated = 0;

@@ -1,13 +1,12 @@
-/// The files that `eikonal-trace compare` leaves in its folder:
+/// The files that `eikonal-trace compare` writes into its folder:
 ///     plate.FFFF.png, truth.FFFF.png      of each frame
 ///     warp-MODEL.FFFF.png                 of each frame and model
-///     error-MODEL.FFFF.png                errors as colours, over their scale
+///     error-MODEL.FFFF.png                errors as colours, above their scale
 ///     change-MODEL.FFFF.png               of each frame but the first: the error of the change of displacement since
-///     the
-///                                         frame before
+///                                         the frame before
 ///     errors.csv, errors.txt              a row for each model (comparison_table.h)
 ///     frontier.svg                        error over time (frontier.h)
-///     index.html                          all of it on one page (comparison_page.h); written last
+///     index.html                          all of this on one page (comparison_page.h); written last
 ///
 /// Every file appears whole or not at all (warp/image/atomic_file.h). Failures: FrameError.
 #pragma once
