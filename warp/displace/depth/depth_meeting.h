@@ -1,20 +1,19 @@
-/// Where a bent ray meets the depth buffer (PHYSICS.md#depth), one tile of pixels at a time.
+/// Finds where bent rays meet the depth buffer (PHYSICS.md#depth), one tile of pixels at a time.
 ///
-/// Three ways, the most expensive first:
-///  - March: follow the ray's path s(z) = pixel + d(z) over the picture, from near to far, until the depth buffer at s
-///  is
-///    nearer than z. The ray stops *before* it would pass in front of something nearer, so a background never drags a
-///    foreground along. What an edge hides is not in the picture; the last visible point before the edge stands in for
-///    it.
-///  - FixedPoint: repeat D <- depth at s(D), from the pixel's own depth on, kFixedPointSteps times.
+/// There are three methods, the most expensive first:
+///  - March: the ray's path s(z) = pixel + d(z) over the picture is followed from near to far, until the depth buffer
+///    at s is nearer than z. The ray stops *before* it would pass in front of something nearer. A background therefore
+///    never drags a foreground along. The picture does not show what an edge hides; the last visible point before the
+///    edge is shown instead.
+///  - FixedPoint: D <- depth at s(D) is repeated kFixedPointSteps times, from the pixel's own depth on.
 ///  - Own: D is the pixel's own depth.
 ///
 /// Depth is read at the pixel nearest to s (depth_plane.h). The march also stops at the depth of a foreground that
-/// stands out before one of the four pixels around s. So no sample of a cubic filter reads foreground for background,
-/// and the pixels of an edge move as one with the foreground that they are the edge of.
+/// stands out before one of the four pixels around s. A cubic filter therefore never reads foreground for background,
+/// and the pixels of an edge move together with their foreground.
 ///
-/// The march goes from facet to facet. If the path stays on the facet under the ray, one leap leads to the facet's
-/// depth. Otherwise a step is kMarchStep pixels long at most. A point where the ray is blocked between two steps is
+/// The march goes from facet to facet. If the path stays on the facet under the ray, one step leads to the facet's
+/// depth. Otherwise a step is at most kMarchStep pixels long. If the ray is blocked between two steps, the point is
 /// found by bisection, to kMarchError.
 ///
 /// Pixels that a RowBender moves, as mirages do, are left to a BentMeeting.
@@ -33,7 +32,8 @@ enum class DepthMeeting { March, FixedPoint, Own };
 
 inline constexpr int kFixedPointSteps = 8;
 
-/// How the rays of pixels that a RowBender moves meet the depth buffer. Its implementation belongs to the medium.
+/// Finds where the rays of pixels that a RowBender moves meet the depth buffer. Its implementation belongs to the
+/// medium.
 class BentMeeting {
   public:
     virtual ~BentMeeting() = default;
@@ -50,7 +50,7 @@ class BentMeeting {
     BentMeeting& operator=(const BentMeeting&) = default;
 };
 
-/// Where the rays of one tile meet the depth buffer.
+/// Finds where the rays of one tile meet the depth buffer.
 class TileMeeting {
   public:
     /// tile: within depth.window(). largest_shift: bound of |d| in the tile [px]. bent: needed if row() is called with

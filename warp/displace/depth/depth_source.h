@@ -1,4 +1,4 @@
-/// Where each pixel's object is, as whoever asks for a displacement map says.
+/// The depth of each pixel's object, as the caller of a displacement map states it.
 #pragma once
 
 #include <variant>

@@ -1,4 +1,4 @@
-/// The bent ray of one pixel on its way to the depth buffer, and the steps that the ways of meeting it share.
+/// The bent ray of one pixel on its way to the depth buffer, and the steps that all methods of depth meeting share.
 ///
 /// A ray is a path s(z) = pixel + d(z) over the picture, where d(z) is the pixel's displacement for an object at axial
 /// depth z. Displacements are in pixels, depths in metres.
@@ -15,7 +15,7 @@ namespace eikonal {
 
 /// A ray is followed in steps of at most kMarchStep. A point where it is blocked is known to kMarchError [px].
 inline constexpr float kMarchStep = 0.5f, kMarchError = 0.001f;
-/// A ray that needs more steps than this, which no plausible air calls for, ends where they do.
+/// Largest number of steps of a ray, which then ends. No plausible air needs as many.
 inline constexpr int kMostMarchSteps = 1024;
 
 /// v rounded down. What is far beyond any picture becomes a number that an int holds.
@@ -38,8 +38,8 @@ inline float length_of(Shift d) {
     return std::sqrt(d.x * d.x + d.y * d.y);
 }
 
-/// The four pixels around a place, or two or one of them if it is on the line between two or at a centre: those that
-/// bilinear filtering reads.
+/// The pixels around a place that bilinear filtering reads. These are four; two if the place is on the line between two
+/// centres, and one if it is at a centre.
 struct PixelsAround {
     int x0, y0, x1, y1;  ///< first and last, each included
 

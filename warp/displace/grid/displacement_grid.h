@@ -1,5 +1,4 @@
-/// Displacement as a function of pixel *and* depth: what every model computes, and what every way of meeting the depth
-/// buffer reads.
+/// Displacement as a function of pixel *and* depth. Every model computes it, and every depth meeting reads it.
 ///
 /// A model bends rays on a grid of nodes. The nodes are `spacing` pixels apart, and node (0, 0) is the display window's
 /// pixel (0, 0). Along each node's ray the model records, at axial depths z_0 < z_1 < … (PHYSICS.md#first-order),
@@ -45,7 +44,7 @@ inline constexpr double kCellsPerNode = 0.55;
 /// pixel limits the cells of screens, whose field is not smooth at its own cell. Screens that resolve l0 with three
 /// cells have an error of 0.6 %. (tests/warp/displace/displacement_test.cpp)
 inline constexpr double kSpacingError = 0.011;
-/// Largest power of two that keeps both limits, for a field whose finest cell is `cell_px` pixels wide on the screen.
+/// The largest power of two within both limits, for a field whose finest cell is `cell_px` pixels wide on the screen.
 int node_spacing(double cell_px);
 
 /// X.x, X.y, S.x, S.y of one node at one depth, in one SIMD register.
@@ -121,8 +120,8 @@ class GridRow {
     std::vector<int> cached_x_;              ///< its pixel column
 };
 
-/// One pixel row of all that bends rays. The displacements of the grids (each with depths of its own) and of the
-/// benders add up.
+/// One pixel row of everything that bends rays. It adds the displacements of the grids, each of which has its own
+/// depths, and of the benders.
 class GridRows {
   public:
     /// Goes to pixel row y (absolute), which the grids cover. Grids and benders must outlive this.

@@ -1,4 +1,4 @@
-/// The models of displacement, what a shot settles for all of them, and what counts as too little to see.
+/// The models of displacement, the settings that all models of a shot share, and the limit of what is visible.
 /// Theory: PHYSICS.md#focusing.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace eikonal {
 
-/// Cheapest first.
+/// The models, from the cheapest to the dearest.
 enum class Model { Table, Tables, Spectral, Screens, FirstOrder, SecondOrder };
 
 inline constexpr std::array<std::pair<std::string_view, Model>, 6> kModelNames{{{"table", Model::Table},
@@ -30,42 +30,43 @@ constexpr std::string_view name_of(Model model) {
     return "";
 }
 
-/// Focusing variance from which folding rays are warned of.
+/// Focusing variance above which the user is warned that rays fold.
 inline constexpr double kFolding = 0.5;
-/// From here on not even second-order holds.
+/// Focusing variance above which not even second-order holds.
 inline constexpr double kHopelessFolding = 10;
 
-/// A medium, or the dropped parts of one, that together move no pixel by more than this are left out [px].
+/// A part of the air may be left out if it moves no pixel by more than this [px]. The limit holds for a medium, and for
+/// the sum of all parts that are left out of one medium.
 inline constexpr double kNegligibleShift = 0.002;
-/// Largest component of a displacement that a map may hold [px]; what would exceed it is refused, not cut.
+/// Largest component of a displacement that a map may hold [px]. A map that would exceed it is refused.
 inline constexpr double kLargestShift = 1e6;
 
-/// What the scene leaves to the footage and the command line.
+/// The settings of a shot that the footage and the command line state, and not the scene.
 struct DisplacerSettings {
-    int width = 0, height = 0;  ///< of the display window
+    int width = 0, height = 0;  ///< size of the display window [px]
     double pixel_aspect = 1;
     double fps = kDefaultFps;   ///< frame F is at t = (F - first_frame)/fps
     std::optional<double> fov;  ///< overrides the scene's camera
-    /// Axial distance [m] > 0 of the background: thin screens fill the air up to it, and what is settled once a shot
-    /// (tables, sizes, warnings) holds up to it.
+    /// Axial distance [m] > 0 of the background. Thin screens fill the air up to it. Tables, sizes and warnings are
+    /// settled once a shot and hold up to it.
     double far = 0;
-    double deepest = 0;  ///< of any object [m], if that may be farther than `far`
-    /// Pixels that maps may be asked for, where they are not the display window's alone. Called if media outside of
-    /// that are there, once a shot.
+    double deepest = 0;  ///< largest depth of an object [m], if it may exceed `far`
+    /// The pixels that maps may be asked for, if they exceed the display window. Called at most once a shot, and only
+    /// if there are media outside of that window.
     std::function<PixelWindow()> overscan;
-    std::optional<Model> model;  ///< for every medium that it suits; left out: each medium's default
+    std::optional<Model> model;  ///< used for every medium that it suits; if left out: each medium's default
     /// Media that move no pixel by more than this before any gain are left out [px] >= 0.
     double negligible = kNegligibleShift;
-    bool sample_errors = false;  ///< stated_error() will be asked for
+    bool sample_errors = false;  ///< whether stated_error() will be called
     std::stop_token stop;        ///< once requested, work ends with a FrameError
 };
 
-/// Whether a depth lies beyond `far`, rounding to float aside.
+/// Whether a depth exceeds `far` by more than the rounding of a float.
 inline bool is_beyond(double depth, double far) {
     return depth > far * (1 + 1e-6);
 }
 
-/// FrameError if a stop has been requested. Cheap beside a ray.
+/// FrameError if a stop has been requested. It costs little compared with a ray.
 inline void check_stop(const std::stop_token& stop) {
     if (stop.stop_requested()) throw FrameError(kStopped);
 }

@@ -1,10 +1,10 @@
-/// The straight rays of one frame, parametrised by axial depth, and how a bend of them shows in pixels.
+/// The straight rays of one frame, parametrised by axial depth, and the displacement in pixels by a bend of them.
 ///
 /// Ray of pixel position p: P(z) = origin(p) + z direction(p), where z is the depth along the camera's axis [m] and
 /// |direction| = L >= 1 metres of ray a metre of depth (perspective), L = 1 (orthographic).
 /// A bend x1 [m] at depth z moves the image by X/z (perspective) or X (orthographic), to first order in x1, with
 ///     X = f_px (x1·right - s_x x1·forward,  -(x1·up - s_y x1·forward) · pixel aspect),   s = slope of p
-/// (orthographic: without the s terms): what a bend has along the ray itself never shows.
+/// (orthographic: without the s terms). The part of a bend along the ray itself is never visible.
 /// Theory: PHYSICS.md#slanted-rays.
 #pragma once
 

@@ -1,4 +1,5 @@
-/// What bends the rays of a row of pixels exactly, beside the displacement grids: a mirage, for example.
+/// A medium that bends the rays of a row of pixels exactly, in addition to the displacement grids; a mirage, for
+/// example.
 ///
 /// The grids hold displacements that are small and smooth. A medium that bends rays too strongly for them implements
 /// this interface instead, and GridRows adds its displacement to that of the grids. One object serves one thread.

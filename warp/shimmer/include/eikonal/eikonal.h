@@ -15,8 +15,8 @@
 ///   - Lengths are in metres, times in frames or seconds, angles in degrees. Depth is axial: along the camera's axis.
 ///   - Frame F depends on the settings and F alone: not on other frames, the order of calls, threads or the machine.
 ///     Maps have the same bits as those of the program `eikonal map`.
-///   - Errors are exceptions: UserError for impossible settings and scenes, FrameError for one frame. The message is one
-///     line. It names settings as the fields below, between backticks. Nothing is printed.
+///   - Errors are exceptions: UserError for impossible settings and scenes, FrameError for one frame. The message is
+///     one line. It names settings as the fields below, between backticks. Nothing is printed.
 ///   - A Shimmer is immutable. Any number of threads may call it at once.
 ///
 /// Needs C++20. CMake: find_package(eikonal), target eikonal::eikonal. pkg-config: eikonal.
