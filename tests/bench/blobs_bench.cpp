@@ -1,7 +1,8 @@
-/// Displacement map of one 1080p frame through hot blobs, in memory: does its time follow the screen area that blobs
-/// cover? Wall-clock time on all processors. Blobs of one size stand at random in the middle part of the picture, at
-/// many depths, in front of a wall; `covered` is the part of the picture's pixels that they move, `discs` the sum of
-/// what each covers alone, in pictures: the work. Plot: noise/blobs/blob_cost.gp.
+/// Time of the displacement map of one 1080p frame through hot blobs, in memory. The question is whether it is
+/// proportional to the screen area that blobs cover. It is wall-clock time on all processors. Blobs of one size stand
+/// at random in the middle part of the picture, at many depths, in front of a wall. `covered` is the part of the
+/// picture's pixels that they move. `discs` is the sum of the areas that each covers alone, in pictures, which is the
+/// work. Plot: noise/blobs/blob_cost.gp.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

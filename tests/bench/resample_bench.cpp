@@ -1,12 +1,12 @@
 /// eikonal::resample against cv::remap of the same kind, 1920 x 1080 RGBA float, a smooth shimmer of rms 2 px.
 ///
-/// Estimator. Other load on the machine changes over seconds, so absolute times of two separate benchmarks do not
-/// compare. Each iteration here times one call of ours and one of the peer, back to back and in alternating order; the
-/// counter "ratio" is the median over iterations of (ours / peer), and ours_ms, peer_ms are medians likewise.
-/// "cpu_ratio" is the same of processor time, which other programs' turns on the processor do not enter: the one to
-/// read on a busy machine (at one thread; with more, the schedulers' waiting counts as work). Both write into buffers
-/// that were touched before, with equal numbers of threads. The peer gets its absolute positions (CV_32FC2) ready made;
-/// it rounds them to 1/32 pixel, we do not. Filters without a peer report ours_ms only. Targets: ratio <= 0.5 for
+/// Estimator. Other load on the machine changes over seconds, so absolute times of two separate benchmarks cannot be
+/// compared. Each iteration here times one call of ours and one of the peer, back to back and in alternating order. The
+/// counter "ratio" is the median over iterations of (ours / peer); ours_ms and peer_ms are medians likewise.
+/// "cpu_ratio" is the same of processor time. Other programs do not count in it, so it is the one to read on a busy
+/// machine with one thread. With more threads the waiting of the schedulers counts as work. Both write into buffers
+/// that were touched before, with equal numbers of threads. The peer gets its absolute positions (CV_32FC2) ready made.
+/// It rounds them to 1/32 pixel; ours does not. Filters without a peer report ours_ms only. Targets: ratio <= 0.5 for
 /// cubic, <= 0.6 for bilinear.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>

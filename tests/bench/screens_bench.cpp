@@ -1,4 +1,4 @@
-// Cost of a frame of evolving thin screens, beside FFTW's own transforms of the same sizes, and of sampling them.
+// Cost of a frame of evolving thin screens and of sampling them, compared with FFTW's transforms of the same sizes.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
@@ -47,7 +47,7 @@ void screens_build(benchmark::State& state) {
 }
 BENCHMARK(screens_build)->Unit(benchmark::kMillisecond);
 
-/// Nanoseconds a point, one lattice of 512²; argument: points a cell, in hundredths.
+/// Nanoseconds per point on one lattice of 512². Argument: points per cell, in hundredths.
 void spline_gradients(benchmark::State& state) {
     FftVector<complex32> spectrum(512 * 257);
     spectrum[3 * 257 + 5] = 1;

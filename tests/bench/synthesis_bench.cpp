@@ -1,10 +1,10 @@
-// Synthesis of the 4-D force field (n, F.x, F.y, F.z on 32⁴) against the same four transforms alone.
+// Synthesis of the 4-D force field (n, F.x, F.y, F.z on 32⁴), compared with the same four transforms alone.
 //
 // Synthesis = drawing every amplitude + four spectra + four inverse transforms, memory included. The peers are the four
-// transforms of an already filled spectrum: with our own plans (portable codelets, noise/math/fft.h) and with the plan
-// that FFTW makes by default, whose SIMD codelets are faster but round differently from one processor to the next. The
-// three run in turn within one iteration, on one thread and by its own processor time, so that a busy machine slows all
-// alike; reported are medians of the ratios.
+// transforms of a spectrum that is filled already. One peer uses our own plans (portable codelets, noise/math/fft.h).
+// The other uses the plan that FFTW makes by default, whose SIMD codelets are faster but round differently from one
+// processor to the next. All three run in turn within one iteration, on one thread, and their processor time is
+// measured. A busy machine therefore slows all alike. The results are medians of the ratios.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 

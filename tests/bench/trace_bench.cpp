@@ -1,8 +1,9 @@
-// Cost of a bent ray beside that of a straight one through the same objects, in one run: a road seen through a long
-// lens, with signs along it, and each kind of air over it. One call is one ray through a pixel's centre, one thread.
+// Cost of a bent ray compared with that of a straight ray through the same objects, in one run. The scene is a road
+// seen through a long lens, with signs along it, and each kind of air over it. One call is one ray through a pixel's
+// centre, on one thread.
 //
-// `straight` is one Embree ray with everything that the tracer wants of its hit, from the same list of rays; `frame`
-// are whole pictures with colour, as `eikonal-trace render` makes them. Take ratios of medians of one run:
+// `straight` is one Embree ray with all the results that the tracer needs of it, from the same list of rays. `frame` is
+// a whole picture with colour, as `eikonal-trace render` makes it. Take ratios of medians of one run:
 // --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true.
 #include <benchmark/benchmark.h>
 #include <oneapi/tbb/global_control.h>

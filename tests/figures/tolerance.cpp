@@ -1,9 +1,9 @@
-// What accuracy costs the tracer, as CSV: for samples' scenes and each tolerance, the processor time of a ray and the
-// largest error of its displacement, against the finest tolerance. Rebuilds reference/trace/tolerance.png with
-// reference/trace/tolerance.gp (reference/README.md).
+// The cost of accuracy in the tracer, as CSV. For scenes of samples/ and each tolerance it gives the processor time of
+// a ray and the largest error of its displacement, compared with the finest tolerance. Rebuilds
+// reference/trace/tolerance.png with reference/trace/tolerance.gp (reference/README.md).
 //
-// Rays are those of a grid of pixels' centres, traced one after the other; times are medians of kRuns runs. Rays that
-// see another object than at the finest tolerance, past an edge, have no common displacement and are left out.
+// The rays go through the centres of a grid of pixels, one after the other. Times are medians of kRuns runs. A ray that
+// sees another object than at the finest tolerance, beside an edge, has no displacement to compare and is left out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
                 ends.push_back(reference::trace(field, &geometry, ray.origin, ray.direction, trace));
             return ends;
         };
-        // Across the view, in pixels.
+        // Across the view [px].
         const auto shown = [&](const BentHit& end) {
             dvec3 seen = end.hit ? end.at.x - camera.position : end.at.p;
             if (camera.projection == Projection::Perspective) seen /= glm::dot(seen, camera.forward);

@@ -1,8 +1,8 @@
-// Fuzz target of the scene reader: any text, as a file, as a --set option and as a .chan file, is either read or
-// refused by a UserError of one line; whatever is read gives finite cameras.
+// Fuzz target of the scene reader. Any text, as a file, as a --set option or as a .chan file, must be read or be
+// refused by a UserError of one line. A text that is read must give finite cameras.
 //
 // Built with -fsanitize=fuzzer and EIKONAL_LIBFUZZER it is driven by libFuzzer. Otherwise its own main feeds it a fixed
-// corpus and deterministic mutations of it: scene_fuzz [runs], or scene_fuzz FILE to replay one input.
+// corpus and deterministic mutations of that. Usage: scene_fuzz [runs], or scene_fuzz FILE to replay one input.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

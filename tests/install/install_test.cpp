@@ -1,5 +1,5 @@
-// The installed tree is all that a host needs: a small program, built against it in both ways, makes the same map as
-// the program `eikonal`, with the presets that were installed.
+// A host needs nothing but the installed tree. A small program is built against it in both ways. It makes the same map
+// as the program `eikonal`, with the installed presets.
 
 #include <cstring>
 #include <fstream>
@@ -63,7 +63,7 @@ TEST_F(Install, PkgConfig) {
     EXPECT_EQ(floats("uv"), map_of_program());
 }
 
-// What the library is made of stays inside.
+// The symbols of the library's internals are not exported.
 TEST_F(Install, OnlyTheInterfaceIsVisible) {
     const Ended symbols =
         tool({"nm", "-DC", "--defined-only", (path("prefix") / EIKONAL_LIBDIR / "libeikonal.so").string()});

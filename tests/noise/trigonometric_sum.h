@@ -1,6 +1,6 @@
-/// The reference for lattice fields: the trigonometric sum itself, term by term, in double precision and with the C
-/// library's sine. It shares only the spectrum's layout with the library. Nyquist modes are cosines in the index, and
-/// they bend no light.
+/// The reference for lattice fields. It is the trigonometric sum itself, term by term, in double precision and with the
+/// C library's sine. It shares only the layout of the spectrum with the library. Nyquist modes are cosines in the
+/// index, and bend no light.
 #pragma once
 
 #include <complex>
@@ -19,7 +19,7 @@ class TrigonometricSum {
 
     /// The n that bends light, and its gradient.
     IndexSample sample(const dvec3& x) const { return sum(x, false); }
-    /// n - n_ambient, every mode counted.
+    /// n - n_ambient with all modes, Nyquist's included.
     double index(const dvec3& x) const { return sum(x, true).n; }
 
   private:

@@ -1,5 +1,5 @@
-/// Black-box tests of `eikonal-trace compare`: exit statuses, what it leaves in its folder, and refusals that name what
-/// is wrong.
+/// Black-box tests of `eikonal-trace compare`: exit statuses, the files in its folder, and refusals that name what is
+/// wrong.
 #include <gtest/gtest.h>
 
 #include "tests/programs/program_run.h"

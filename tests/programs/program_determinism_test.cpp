@@ -1,5 +1,5 @@
-// A frame is a pure function of the scene, the input and its number: the same bytes for any threads, chunks and order,
-// and at the same cost wherever it lies in the shot.
+// A frame depends on the scene, the input and its number alone. It has the same bytes for any threads, chunks and
+// order, and the same cost at any place of the shot.
 
 #include <algorithm>
 

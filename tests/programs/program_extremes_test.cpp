@@ -1,5 +1,6 @@
-// The real programs at the ends of every range (noise/README.md, "Extremes"): a finite map within seconds, or one clear
-// line. Values themselves are judged by extremes_view_test, extremes_media_test and the tests of each module.
+// The real programs at the ends of every range (noise/README.md, "Extremes"). Each run gives a finite map within
+// seconds, or one clear line. The values are judged by extremes_view_test, extremes_media_test and the tests of each
+// module.
 #include <cmath>
 #include <limits>
 
@@ -169,7 +170,7 @@ TEST_F(ExtremesTest, DistancesAndLenses) {
         }
     }
     EXPECT_EQ(finite({"--scene", "screens.toml", "--gain", "0"}), 0);
-    // longer than the lattice: warned of
+    // A path longer than the lattice's period gives a warning.
     EXPECT_GT(finite({"--scene", "lattice.toml", "--distance", "400", "--far", "400"}), 1e-3);
 }
 
@@ -205,7 +206,7 @@ TEST_F(ExtremesTest, DepthMaps) {
         depth("z.exr", [&](int, int) { return none; });
         wrong({"--scene", "screens.toml", "--depth", "z.exr"}, 1, {"frame 1", "z.exr", "holds no depth"});
     }
-    // farther than anybody said
+    // The map has depths beyond every setting.
     depth("z.exr", [](int x, int) { return x < 2 ? 5000 : 5; });
     const Words words{"map", "--scene", "screens.toml", "--set", "plate=", "--depth", "z.exr", "-o", "f.exr"};
     const Ended told = run(words);
@@ -221,7 +222,7 @@ TEST_F(ExtremesTest, DepthMaps) {
     silent(run({"map", "--scene", "lattice.toml", "--set", "plate={far=5}", "--depth", "z.exr", "-o", "g.exr"}));
 }
 
-// A camera that zooms out until its corner rays are too long, and in until what was too weak to see is not.
+// A camera zooms out until its corner rays are too long, and in until a medium that was too weak to see is visible.
 TEST_F(ExtremesTest, Zooms) {
     scenes();
     write_text("zoom.chan", "1 0 1.5 0 0 0 0 5\n2 0 1.5 0 0 0 0 179.9\n3 0 1.5 0 0 0 0 1e-4\n");

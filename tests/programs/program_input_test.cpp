@@ -1,5 +1,5 @@
-// Footage, depth maps and mattes that are missing, damaged or do not fit: status 1 with the file and the reason, or 2
-// where the options are at fault; the frames before stay whole.
+// Footage, depth maps and mattes that are missing, damaged or do not fit. The status is 1 with the file and the reason,
+// or 2 if the options are at fault. The frames before stay whole.
 
 #include <sys/stat.h>
 
@@ -67,7 +67,7 @@ TEST_F(InputTest, TruncatedAnywhere) {
     }
 }
 
-// A pipe that nobody writes to would be waited for for ever.
+// The program would wait for ever for a pipe that nobody writes to.
 TEST_F(InputTest, PipesAndDevices) {
     for (const char* name : {"f.exr", "f.mp4", "f.toml", "f.chan"}) ASSERT_EQ(mkfifo(path(name).c_str(), 0600), 0);
     const std::string what = "not a regular file";
@@ -106,7 +106,7 @@ TEST_F(InputTest, SequencesWithHolesAndBadFrames) {
     EXPECT_EQ(warp("s.####.png", "o.####.png", {"--skip-bad-frames"}).status, 1);
     EXPECT_TRUE(fs::exists(path("o.0005.png")));
 
-    // the first frame is the bad one; a frame of another size
+    // The first frame is the bad one, or a frame has another size.
     write_text("s.0001.png", "");
     EXPECT_EQ(warp("s.####.png", "p.####.png", {"--skip-bad-frames"}).status, 1);
     EXPECT_TRUE(fs::exists(path("p.0005.png")));
@@ -191,7 +191,7 @@ TEST_F(InputTest, SkippedCompanions) {
     EXPECT_TRUE(fs::exists(path("m.0002.exr")) && fs::exists(path("m.0004.exr"))) << maps.err;
 }
 
-// Accepted, but told once a run.
+// These are accepted, with a warning once a run.
 TEST_F(InputTest, ImplausibleCompanions) {
     const auto warned = [&](Words more, const std::string& text) {
         more.insert(more.end(), {"--overwrite", "--frames", "1-3"});
@@ -220,7 +220,7 @@ TEST_F(InputTest, ImplausibleCompanions) {
     refused(warp("in.exr", "p.exr", {"--mask", "in.png"}), 2, {"in.png", "which channel", "R, G, B"});
 }
 
-// NaN and infinity stay where nothing moves, and become finite where something does, which is told once a run.
+// NaN and infinity stay where nothing moves. Where something moves they become finite, with a warning once a run.
 TEST_F(InputTest, PlatesThatAreNotFinite) {
     const auto colour = [](int x, int y, int c) {
         return y == 9 && x == 7 ? kNan : y == 9 && x == 40 && c == 1 ? kInf : 0.5f;

@@ -1,4 +1,4 @@
-// Ctrl-C, SIGTERM and SIGKILL in the middle of a sequence: finished frames are whole and are not made again.
+// Ctrl-C, SIGTERM and SIGKILL in the middle of a sequence. Finished frames are whole and are not made again.
 
 #include <signal.h>
 
@@ -44,7 +44,7 @@ class InterruptTest : public Program {
         }
         return finish(process);
     }
-    /// All that is there is readable, and the next run leaves it alone.
+    /// Every file that exists is readable, and the next run does not change it.
     void check_resumes() const {
         const Words before = finished();
         ASSERT_GE(before.size(), 4u);
@@ -88,7 +88,7 @@ TEST_F(InterruptTest, Killed) {
     check_resumes();
 }
 
-// A frame under way is given up, which may have minutes to go; those before are whole and kept.
+// A frame in progress may need minutes more, and is given up. The frames before are whole and kept.
 TEST_F(InterruptTest, StopsWithinAFrame) {
     const Words slow{"warp",       "in.exr",
                      "-o",         "o.####.exr",

@@ -1,4 +1,4 @@
-// What the options do to the picture: strength, depth, dispersion, shutter.
+// The effect of the options on the picture: strength, depth, dispersion, shutter.
 
 #include <cmath>
 
@@ -42,8 +42,9 @@ TEST_F(LookTest, GainIsExact) {
     EXPECT_NE(air_map({"--seed", "2"}).values, one.values);
 }
 
-// Eight frames 100 apart of a view some thirty eddies wide: dozens of independent patches each, so that the sample's
-// rms is within a few percent; 15 % is safe. Outer scales make some of it common to the frame.
+// Eight frames, 100 apart, of a view that is some thirty eddies wide. Each has dozens of independent patches, so that
+// the rms of the sample is within a few percent; 15 % is safe. Large outer scales make a part of it common to the
+// frame.
 TEST_F(LookTest, RmsIsHonouredOverTheShot) {
     for (const char* preset : {"gentle"}) {
         silent_but_for_folding(run({"map", "--preset", preset, "--set", "camera.resolution=[64, 48]", "--rms", "1.5",
@@ -91,9 +92,9 @@ TEST_F(LookTest, GroundIsTheDepthOfAPlane) {
     EXPECT_LT(rms_of(ground, 0, kWidth, 44, 48), 0.8 * rms_of(ground, 0, kWidth, 0, 12)) << "near ground moves less";
 }
 
-// Foreground at 5 m (red) before a background at 300 m (green). Where the air is the same all the way, the angle's
-// variance grows as the path (PHYSICS.md#first-order): 5 m of it leave √(5/300) = 0.13 of the rms. Where it is hot
-// beyond 20 m only, nothing.
+// A foreground at 5 m (red) before a background at 300 m (green). In uniform air the variance of the angle is
+// proportional to the path (PHYSICS.md#first-order), so that 5 m give √(5/300) = 0.13 of the rms. If the air is hot
+// beyond 20 m only, the foreground does not move.
 TEST_F(LookTest, ForegroundStaysStill) {
     const auto in_front = [](int x, int) { return x < 32; };
     depth("z.exr", [&](int x, int y) { return in_front(x, y) ? 5.f : 300.f; });
@@ -124,7 +125,8 @@ TEST_F(LookTest, ForegroundStaysStill) {
     EXPECT_LT(march, 0.3 * own);
 }
 
-// Pixels hold their own column: the output tells how far each colour came. Ciddor's (n-1) at 650, 550, 450 nm.
+// Each pixel holds its own column, so the output shows how far each colour has moved. Ciddor's (n-1) at 650, 550, 450
+// nm.
 TEST_F(LookTest, DispersionFollowsTheIndexOfAir) {
     paint("in.exr", OIIO::ImageSpec(kWidth, kHeight, 3, OIIO::TypeDesc::FLOAT),
           [](int x, int, int) { return static_cast<float>(x); });

@@ -1,5 +1,5 @@
-// Scenes of hot blobs and heated surfaces through the real program: bad values name their key, frames are pure
-// functions of their number, and what bends nothing costs and changes nothing.
+// Scenes of hot blobs and heated surfaces through the real program. Bad values are reported with their key. Frames
+// depend on their number alone. Media that bend no light cost and change nothing.
 
 #include <algorithm>
 
@@ -155,7 +155,7 @@ TEST_F(MediaTest, ASurfaceIsTheSameForAnyThreads) {
     EXPECT_GT(rms(read("a.exr")), 0.002);
 }
 
-// The scene's own temperature: nothing is left of any medium, and the picture keeps its values.
+// Every medium has the scene's own temperature. All are left out, and the picture keeps its values.
 TEST_F(MediaTest, WhatBendsNothingIsLeftOutAndSaidSo) {
     plate("in.png");
     plate("in.exr");

@@ -43,7 +43,7 @@ TEST_F(ModelTest, AutoTakesTheCheapestWithinTheTolerance) {
     silent(how);
     EXPECT_EQ(loose["model_choice"]["model"], "table");
     EXPECT_EQ(loose["tolerance_px"], 100);
-    // a tolerance alone asks for a choice as well
+    // A tolerance alone also asks for a choice.
     const double coarse = loose["model_choice"]["p95_px"];
     const nlohmann::json fine = report({"--tolerance", std::to_string(coarse / 20)});
     EXPECT_NE(fine["model_choice"]["model"], "table");
@@ -81,7 +81,7 @@ TEST_F(ModelTest, SaysThatNoModelSuffices) {
     EXPECT_NE(how.err.find("eikonal-trace render"), std::string::npos);
 }
 
-// A model that was asked for is kept, and its frames beyond the tolerance are told.
+// A model that the user asked for is kept, and frames beyond the tolerance are reported.
 TEST_F(ModelTest, WarnsOfANamedModelBeyondTheTolerance) {
     Ended how;
     const nlohmann::json r = report({"--model", "table", "--tolerance", "1e-9"}, &how);
@@ -90,7 +90,8 @@ TEST_F(ModelTest, WarnsOfANamedModelBeyondTheTolerance) {
         << how.err;
 }
 
-// What would help is told: a dearer model where one suffices, the tracer where none does, no model where none is used.
+// The report names what would help: a dearer model if one suffices, the tracer if none does, nothing if no model is
+// used.
 TEST_F(ModelTest, NamesWhatSuffices) {
     Ended how;
     const double coarse = p95(report({"--model", "table"}));

@@ -79,7 +79,7 @@ TEST_F(MovieTest, MovieToMovieKeepsItsFacts) {
     EXPECT_NE(again.err.find("already there and kept"), std::string::npos);
 }
 
-// A movie that is there is kept if it can be what is asked for.
+// An existing movie is kept if it may be the one that is asked for.
 TEST_F(MovieTest, MoviesThatAreThere) {
     make_clip("a.mp4", {"-c:v", "libx264", "-pix_fmt", "yuv420p", "-c:a", "aac"});
     for (const char* name : {"o.mp4", "o.mkv"}) {
@@ -112,7 +112,7 @@ TEST_F(MovieTest, OggTakesTheora) {
     EXPECT_NE(fewer.err.find("already there with about 12 frames, not the 6"), std::string::npos) << fewer.err;
 }
 
-// Its length is not told: the number of frames is known at the end.
+// A transport stream states no length. The number of frames is known at the end only.
 TEST_F(MovieTest, TransportStreams) {
     make_clip("a.ts", {"-c:v", "mpeg2video", "-c:a", "mp2"});
     const Ended ended = warp("a.ts", "b.ts", {"--progress", "plain"});
@@ -145,7 +145,7 @@ TEST_F(MovieTest, FieldOrderIsKept) {
     }
 }
 
-// ffmpeg begins the video of such a file when the sound's padding is over, and tags it with when it ends.
+// In such a file ffmpeg begins the video when the padding of the sound is over, and states the time when it ends.
 TEST_F(MovieTest, MatroskaWhoseVideoBeginsLater) {
     silent(tool({"ffmpeg", "-v", "error", "-f", "lavfi", "-i", "testsrc2=size=64x48:rate=24:duration=2", "-f", "lavfi",
                  "-i", "sine=duration=2", "-c:v", "libx264", "-c:a", "aac", "late.mkv"}));
@@ -180,7 +180,7 @@ TEST_F(MovieTest, StillsAndSequences) {
     EXPECT_EQ(facts("deep.mov").pixels, "yuv420p10le") << "float pictures are not cut to 8 bits";
 }
 
-// The first frame tells a movie's size, but its damage is no more than any other's.
+// The first frame gives the size of a movie. Its damage counts no more than that of any other frame.
 TEST_F(MovieTest, DamagedFirstFrame) {
     make_clip("a.mkv", {"-c:v", "ffv1", "-level", "3", "-slicecrc", "1", "-pix_fmt", "yuv420p", "-an"});
     std::string data = bytes("a.mkv");

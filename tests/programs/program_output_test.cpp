@@ -1,4 +1,4 @@
-// What lies on the disk afterwards: full disks, finished frames, reports, progress, fields.
+// The files after a run: full disks, finished frames, reports, progress, fields.
 
 #include <nlohmann/json.hpp>
 
@@ -58,7 +58,7 @@ TEST_F(OutputTest, FinishedFramesAreKept) {
     EXPECT_NE(fs::last_write_time(path("o.0001.exr")), time);
 }
 
-// What lies there under an output's name is kept if it is whole, made anew if it is not, and refused if it may be
+// An existing file with the name of an output is kept if it is whole, made anew if it is not, and refused if it may be
 // another picture.
 TEST_F(OutputTest, DamagedFramesAreMadeAnewAndOthersRefused) {
     const Words words{"warp", "in.exr", "-o", "o.####.exr", "--scene", "air.toml", "--frames", "1-4"};
@@ -153,7 +153,7 @@ TEST_F(OutputTest, FieldSlices) {
     const Pixels slice = read("f.0003.exr");
     EXPECT_EQ(slice.spec.width, 16);
     EXPECT_EQ(slice.spec.height, 16);
-    // OpenEXR stores channels by name
+    // OpenEXR sorts channels by name.
     for (const char* name : {"n", "F.x", "F.y", "F.z"}) EXPECT_NO_THROW(slice.channel(name));
     EXPECT_EQ(slice.spec.format, OIIO::TypeDesc::FLOAT);
     const auto number = [&](const char* key) { return slice.spec.get_float_attribute(key, -1); };

@@ -1,4 +1,4 @@
-// What is kept of pictures, and the maps beside them.
+// The properties of pictures that are kept, and the maps that are written in addition.
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +106,7 @@ TEST_F(PictureTest, ZeroDisplacementKeepsEveryBit) {
     EXPECT_EQ(stored("nothing.png"), stored("b.png"));
 }
 
-// A photograph taken upright comes out upright, in whatever format: what a viewer shows of it, and so does the air.
+// A photograph taken upright comes out upright in every format. A viewer shows it so, and the air applies to that view.
 TEST_F(PictureTest, PhotographsAreTurnedUpright) {
     ImageSpec turned(kHeight, kWidth, 3, TypeDesc::UINT8);
     turned.attribute("Orientation", 6);
@@ -134,7 +134,8 @@ TEST_F(PictureTest, PhotographsAreTurnedUpright) {
     }
 }
 
-// The number of a file given alone is its frame where sequences have it, so that a farm may be given file by file.
+// The frame number of a file given alone is the number in its name, where sequences have it. A farm may thus be given
+// single files.
 TEST_F(PictureTest, AFileOfASequenceGivenAlone) {
     plate("p.1002.exr");
     plate("IMG_1234.exr");
@@ -253,7 +254,7 @@ TEST_F(PictureTest, MapsFollowTheContract) {
         }
 }
 
-// The camera looks at the display window, wherever the file puts it.
+// The camera looks at the display window, whatever the origin of that window in the file.
 TEST_F(PictureTest, AirDoesNotDependOnWhereTheDisplayWindowLies) {
     ImageSpec spec(kWidth, kHeight, 3, TypeDesc::FLOAT);
     paint("here.exr", spec, code);

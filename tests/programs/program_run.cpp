@@ -30,7 +30,7 @@ std::string slurp(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Where a process's messages go: beside the folder, so that the folder holds the program's files only.
+/// The file for a process's messages. It is beside the folder, so that the folder holds the program's files only.
 fs::path messages(const fs::path& folder, const char* which, pid_t process) {
     return folder.string() + "." + std::to_string(process) + which;
 }

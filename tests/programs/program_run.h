@@ -1,5 +1,5 @@
-/// Black-box tests of `eikonal`: runs the real program in a folder of its own, which is removed afterwards, and looks
-/// at its exit status, its messages and its files. What the tests of program_*_test.cpp share.
+/// Black-box tests of `eikonal`, the part that all program_*_test.cpp share. It runs the real program in a folder of
+/// its own, which is removed afterwards, and examines exit status, messages and files.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -60,9 +60,10 @@ class Program : public testing::Test {
 
     /// Expects this status and exactly one line on stderr, which begins with "eikonal: " and has all the fragments.
     void refused(const Ended& ended, int status, std::initializer_list<std::string> fragments) const;
-    /// Expects success without a word.
+    /// Expects success without any output.
     void silent(const Ended& ended) const;
-    /// Expects success, and no word but on folding rays, which small pictures that are moved by pixels must have.
+    /// Expects success, and no warning but that rays fold. Small pictures that are moved by pixels always have that
+    /// one.
     void silent_but_for_folding(const Ended& ended) const;
 
     fs::path path(const std::string& name) const { return folder_ / name; }

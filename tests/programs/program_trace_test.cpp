@@ -1,5 +1,5 @@
 /// Black-box tests of `eikonal-trace`: exit statuses, one-line messages that name what is wrong, and what it writes.
-/// Length: all commands of one program, on the scenes and files that they share.
+/// Length: all commands of one program, which share scenes and files.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -33,7 +33,7 @@ class Trace : public Program {
             EXPECT_NE(ended.err.find(fragment), std::string::npos) << "no \"" << fragment << "\" in: " << ended.err;
         EXPECT_EQ(ended.out, "");
     }
-    /// A wall behind what `more` says.
+    /// Writes a scene of a wall, and `more` in front of it.
     void wall(const std::string& more = "") const {
         write_text("scene.toml", "[camera]\nresolution = [32, 24]\n" + more +
                                      "\n[[object]]\nname = \"wall\"\nshape = \"quad\"\norigin = [0, 0, -20]\n"
@@ -139,14 +139,14 @@ TEST_F(Trace, ACameraWithinASphereIsPointedOut) {
 TEST_F(Trace, ACameraBelowAHeatedSurfaceIsRefused) {
     wall("position = [0, -3, 0]\n" + kSurface);
     refuses(render({"scene.toml", "-o", "a.exr"}), 2, {"eikonal-trace: scene.toml:6: medium.0.origin", "2 m below"});
-    // No air at all, and none that is heated.
+    // The camera may be there if rays are straight, or if the surface is not heated.
     EXPECT_EQ(render({"scene.toml", "-o", "a.exr", "--straight", "--samples", "1"}).status, 0);
     EXPECT_EQ(
         render({"scene.toml", "-o", "b.exr", "--samples", "1", "--set", "medium.0.surface_temperature=293.15"}).status,
         0);
 }
 
-// What only shows when a scene is used is told with its place as what its reader finds is, by either program.
+// Some errors show only when a scene is used. Both programs report them with their place, like errors of the reader.
 TEST_F(Trace, BothProgramsNameThePlaceOfWhatIsWrong) {
     const auto both = [&](const std::string& more, const Words& settings, const std::string& place,
                           const std::string& what) {
@@ -162,7 +162,7 @@ TEST_F(Trace, BothProgramsNameThePlaceOfWhatIsWrong) {
         "[[medium]]\ntype = \"blobs\"\nsource = [{rate = 1, lifetime = 5},\n{rate = 1e6, lifetime = 100}]\n";
     both(many, {}, "scene.toml:6", "medium.0.source.1.rate = ");
     both(many, {"medium.0.source.1.rate=2e6"}, "--set medium.0.source.1.rate=2e6", "medium.0.source.1.rate = ");
-    // Of keys that are left out: what they belong to.
+    // For keys that are left out, the place is that of the table.
     both("[[medium]]\ntype = \"surface\"\n", {"camera.position=[0,-2,0]"}, "scene.toml:3", "medium.0.origin: ");
     both(kSurface, {"camera.position=[0,-2,0]"}, "scene.toml:5", "medium.0.origin: ");
     both(kSurface, {"medium.0.origin=[0,7,0]"}, "--set medium.0.origin=[0,7,0]", "medium.0.origin: ");
@@ -179,7 +179,7 @@ TEST_F(Trace, RaysThatGetNowhereAreToldAndCostLittle) {
     EXPECT_EQ(explained.status, 0) << explained.err;
     EXPECT_LT(took.count(), 60);  // hours, if nothing stopped it
     EXPECT_NE(explained.out.find("tried have a way to go that takes more than"), std::string::npos) << explained.out;
-    // What is not known is not said to be nothing.
+    // An unknown displacement is not reported as zero.
     EXPECT_NE(explained.out.find("displacement: unknown, none of the "), std::string::npos) << explained.out;
     EXPECT_EQ(explained.out.find("0 px"), std::string::npos) << explained.out;
     EXPECT_EQ(names(), Words{"scene.toml"});
@@ -189,7 +189,7 @@ TEST_F(Trace, RaysThatGetNowhereAreToldAndCostLittle) {
         << rendered.err;
     EXPECT_NE(rendered.err.find(" of 12 pixels hold rays that the step budget ended"), std::string::npos)
         << rendered.err;
-    // Air of absurd strength: rays that lose their way in it are ended long before their budget.
+    // Air of absurd strength. Rays that are trapped in it are ended long before their budget.
     wall(
         "[[medium]]\ntype = \"turbulence\"\nform = \"lattice\"\nlattice = [32, 32, 32, 4]\n"
         "period = [1, 1, 1, 1]\nouter_scale = 0.5\ncn2 = 1e12\n");
@@ -201,7 +201,7 @@ TEST_F(Trace, RaysThatGetNowhereAreToldAndCostLittle) {
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 8; ++x) steps += lost.at(x, y, lost.channel("steps")) / 48.0;
     EXPECT_LT(steps, 100000 / 4);
-    // Usual air is rendered without a word.
+    // Usual air is rendered without any message.
     wall(kSurface);
     const Ended usual = render({"scene.toml", "-o", "b.exr", "--samples", "1"});
     EXPECT_EQ(usual.err.find("warning"), std::string::npos) << usual.err;
@@ -221,7 +221,7 @@ TEST_F(Trace, RaysThatHaveAWayToGoAreNotWarnedOf) {
     EXPECT_EQ(ended.err.find("warning"), std::string::npos) << ended.err;
     const Pixels picture = read("a.exr");
     EXPECT_GT(picture.at(4, 3, picture.channel("steps")), 2000) << "too short a way for this test";
-    // Where they cannot get there the budget is named, before and after.
+    // If the rays cannot end within the budget, it is named before and after the run.
     const Ended cut = with({"scene.toml", "-o", "a.exr", "--step-budget", "2100"});
     EXPECT_NE(cut.err.find("warning: 64 of 64 rays tried are on a way that may use up their 2100 steps"),
               std::string::npos)
@@ -245,7 +245,7 @@ TEST_F(Trace, ACameraWithinAClosedMeshIsPointedOut) {
     EXPECT_TRUE(said("camera.position=[0, 0, 0]"));
     EXPECT_TRUE(said("camera.position=[0.9, -0.3, 0.5]"));
     EXPECT_FALSE(said("camera.position=[0, 0, 3]"));
-    // Written face by face, with corners of their own.
+    // A closed box whose faces have corners of their own.
     std::string corners;
     const int box[6][4] = {{1, 2, 3, 4}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}};
     for (const auto& face : box) {
@@ -256,11 +256,11 @@ TEST_F(Trace, ACameraWithinAClosedMeshIsPointedOut) {
     }
     write_text("box.obj", corners);
     EXPECT_TRUE(said("camera.position=[0.9, -0.3, 0.5]"));
-    // Beside a sheet that is none of it.
+    // The same with a separate sheet beside the box.
     write_text("box.obj", corners + "v -9 -9 -9\nv 9 -9 -9\nv 9 9 -9\nf -3 -2 -1\n");
     EXPECT_TRUE(said("camera.position=[0.9, -0.3, 0.5]"));
     EXPECT_FALSE(said("camera.position=[0, 0, -8.9999]"));
-    // A face is missing: not closed, though most ways out pass one.
+    // A face is missing, so the box is not closed, although most rays out of it cross a face.
     write_text("box.obj",
                "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
                "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 4 1 5 8\n");
@@ -307,7 +307,7 @@ TEST_F(Trace, SameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(bytes("1.exr"), bytes("5.exr"));
 }
 
-// Where the path has a key, the frame is that of a camera which stands there.
+// At a key of the path, the frame is that of a still camera at that key.
 TEST_F(Trace, AMovingCameraIsAStillOneInEachFrame) {
     const auto scene = [&](const std::string& name, const std::string& camera) {
         write_text(name, "[camera]\nresolution = [32, 24]\n" + camera + "\n" + kBlob +
@@ -337,7 +337,7 @@ TEST_F(Trace, OutputThatCannotBeWrittenFailsTheFrame) {
             1, {"none"});
 }
 
-/// Whether a process has taken SIGINT into its own hands.
+/// Whether a process handles SIGINT itself.
 bool catches_interrupts(pid_t process) {
     std::ifstream status("/proc/" + std::to_string(process) + "/status");
     const std::string key = "SigCgt:";
@@ -364,15 +364,15 @@ TEST_F(Trace, AnInterruptLeavesNothingUnfinished) {
         EXPECT_EQ(names(), Words{"scene.toml"});
     };
     interrupt({"--samples", "256", "--set", "camera.resolution=[640,480]"});
-    // Rays that take hours: within the first.
+    // The rays take hours. The stop comes within the first one.
     wall("[[medium]]\ntype = \"profile\"\nprofile = \"rod\"\ng = 1e6\n");
     interrupt({"--samples", "1", "--step-budget", "1000000000", "--tolerance", "1e-6"});
-    // The sun's rays, before the first tile.
+    // The same for the rays of the sun, before the first tile.
     wall(kBlob + "[light]\n");
     interrupt({"--samples", "1", "--light-rays", "2048", "--tolerance", "1e-9"});
 }
 
-// n² = 1 + z (PHYSICS.md#closed-forms): started along x where z = 0, x = u and z = u²/4.
+// n² = 1 + z (PHYSICS.md#closed-forms). A ray that starts along x at z = 0 has x = u and z = u²/4.
 TEST_F(Trace, PathIsTheParabola) {
     write_text("scene.toml",
                "[[medium]]\ntype = \"profile\"\nprofile = \"linear-squared\"\nslope = 1\naxis = [0, 0, 1]\n");
@@ -405,7 +405,7 @@ TEST_F(Trace, PathIsTheParabola) {
     EXPECT_EQ(written.status, 0);
     EXPECT_EQ(written.out, "");
     EXPECT_EQ(bytes("ray.csv"), printed.out);
-    // The last row is the length itself, wherever the medium ends.
+    // The length of the last row is the one asked for, wherever the medium ends.
     write_text("lens.toml", "[[medium]]\ntype = \"profile\"\nprofile = \"luneburg\"\n");
     for (const std::string length : {"7", "1.1339745962155614", "1.1339745962156", "1.13397459622", "1.2"}) {
         const Ended ended =

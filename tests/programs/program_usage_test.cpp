@@ -1,4 +1,4 @@
-// Wrong usage and invalid scenes: status 2, one line that names the thing, nothing written. And help.
+// Wrong usage and invalid scenes: status 2, one line that names what is wrong, and no file written. Also the help.
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 // Tells ThreadSanitizer how oneTBB orders memory. A part of every program that is built for -fsanitize=thread.
 //
-// Debian's libtbb is built without the sanitizer, which therefore sees neither the deques by which a task reaches
-// another thread nor the buffers between the stages of a pipeline, and takes all that our threads hand to each other
-// for races. Suppressing those reports by name would suppress real races within the bodies of our loops too. Instead,
-// the library's entry points that our programs call are defined here, around the library's own: each states just the
-// order that oneTBB promises, so that two bodies that run side by side stay unordered.
+// Debian's libtbb is built without the sanitizer. The sanitizer therefore sees neither the deques by which a task
+// reaches another thread nor the buffers between the stages of a pipeline. It reports everything that our threads hand
+// to each other as races. Suppressing those reports by name would also suppress real races within the bodies of our
+// loops. Instead, the library's entry points that our programs call are defined here, around the library's own. Each
+// states exactly the order that oneTBB promises, so that two bodies that run side by side stay unordered.
 //
 //   a task's spawning         happens before its run
 //   all of a loop's tasks     happen before execute_and_wait returns

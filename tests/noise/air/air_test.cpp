@@ -1,5 +1,5 @@
 // The sum of a scene's media: index, force, jets, steps and edges, for each kind alone and together.
-// Length: every promise is checked for every kind of medium, on the scenes that stand at the top.
+// Length: every property is checked for every kind of medium, on the scenes at the top.
 #include "noise/air/air.h"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ double largest(const glm::dmat3& m) {
     return most;
 }
 
-/// Whether a jump of F, or a cell of a spline (where its Hessian has a kink), is so near that differences straddle it.
+/// Whether the points of a difference lie on both sides of a jump of F, or of a kink of a spline's Hessian at a cell.
 bool straddles(const AirInstant& f, const dvec3& x, double h) {
     for (int a = 0; a < 3; ++a)
         for (const double sign : {-1.0, 1.0})
@@ -204,7 +204,7 @@ TEST(Air, JetsAreTheDerivativesOfTheirOwnGradient) {
         };
         const auto lattice_at = [&](const dvec3& y) { return snapshot.smooth_sample(y); };
         check(lattice_at(x), snapshot.jet(x), lattice_at, 1e-3);
-        // the warp's single precision is the same function
+        // The warp's single precision must give the same function.
         const IndexSample rough = snapshot.sample(x);
         largest_n = std::max(largest_n, std::abs(rough.n));
         largest_slope = std::max(largest_slope, glm::length(rough.gradient));
@@ -317,8 +317,9 @@ TEST(Air, WithoutAnIndexNothingBends) {
     EXPECT_EQ(largest(f.force_jet(inside, {0, 0, -1}).by_position), 0);
 }
 
-// A straight ray integrates to what the warp sums: √L³ lever_m(D) M ∇⊥(gψ_m), which turns it by √L |∇⊥(gψ_m)| in every
-// direction across it: the part of the bend in its plane of slant is L times as long on the screen as across the ray.
+// The bend of a straight ray through screens is what the warp sums: √L³ lever_m(D) M ∇⊥(gψ_m). Each screen turns the
+// ray by √L |∇⊥(gψ_m)| in every direction across it. In the plane of slant the part of the bend is L times as long on
+// the screen as across the ray.
 TEST(Air, ScreensBendStraightRaysAsTheWarpDoes) {
     Draw draw;
     for (const bool falloff : {false, true})
@@ -364,7 +365,7 @@ TEST(Air, ScreensBendStraightRaysAsTheWarpDoes) {
                     u = end + 1e-12;
                 }
                 EXPECT_LE(glm::length(x1 - expected), 1e-4 * scale);
-                // and backwards along the same line the air is the same
+                // Backwards along the same line the air is the same.
                 EXPECT_LE(glm::length(f.force(fr.origin + 0.5 * U * d, d) - f.force(fr.origin + 0.5 * U * d, -d)),
                           1e-12 * scale);
             }
@@ -442,7 +443,7 @@ TEST(Air, StepsMissNothing) {
     }
 }
 
-// One medium's thin layer far away is reached by steps that end before it, whichever way the ray goes.
+// A thin layer of one medium far away is reached by steps that end before it, in whatever direction the ray goes.
 TEST(Air, StepsAndClearWaysReachThinThings) {
     SurfaceSpec thin = surface();
     thin.dropoff = 1e-5;
@@ -473,7 +474,8 @@ TEST(Air, GrazingRaysOverASurfaceTakeFewSteps) {
     EXPECT_GT(f.longest_step({0, 3, 0}, grazing), 1);
 }
 
-// |dx/du| = speed along any ray: a ray grazing a hot layer within its critical slope, through blobs and a lattice.
+// |dx/du| = speed along any ray. The ray grazes a hot surface within its critical slope and goes through blobs and a
+// lattice.
 TEST(Air, RaysKeepTheirSpeed) {
     for (const RayEquation equation : {RayEquation::Physical, RayEquation::Paper}) {
         const OpticsSpec optics{.ray_equation = equation, .exaggeration = 20};

@@ -1,4 +1,5 @@
-// Media at the ends of their ranges (noise/README.md, "Extremes"): against long double and quadrature, or refused.
+// Media at the ends of their ranges (noise/README.md, "Extremes"). They agree with long double and quadrature, or are
+// refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,7 +41,7 @@ void has(const std::string& message, std::initializer_list<std::string_view> fra
         EXPECT_NE(message.find(fragment), std::string::npos) << "no '" << fragment << "' in: " << message;
 }
 
-// n(T) - n(T_a) = (n0 - 1) T0 (1/T - 1/T_a), in 64 bits of mantissa.
+// n(T) - n(T_a) = (n0 - 1) T0 (1/T - 1/T_a), compared with a computation in 64 bits of mantissa.
 TEST(Extremes, IndexFromOneKelvinToABillion) {
     for (const double Ta : {1.0, 150.0, 293.15, 1e5, 1e9})
         for (const double T : {1.0, 20.0, 293.15, 293.1500001, 1e3, 1e5, 1e9}) {
@@ -51,8 +52,8 @@ TEST(Extremes, IndexFromOneKelvinToABillion) {
         }
 }
 
-// The formulae by the C library in long double. An exponential's relative error is its argument's absolute one: some
-// 1e-16 of (11/6) ln k², at most 120 here.
+// The formulae are computed by the C library in long double. The relative error of an exponential is the absolute error
+// of its argument. This is some 1e-16 of (11/6) ln k², which is at most 120 here.
 TEST(Extremes, SpectraOverTwentyFourDecades) {
     for (const double cn2 : {0.0, kDenormal, 1e-308, 1e-30, 1e-13, 1e-6, 1e12})
         for (const double l0 : {1e-12, 1e-6, 0.01, 1e6})
@@ -103,7 +104,8 @@ TurbulenceSpec paper_lattice(double lowest) {
     return spec;
 }
 
-// 16 samples resolve 7 cycles along an axis (the 8th is Nyquist's and bends nothing), 7 √3 = 12.1 along the diagonal.
+// 16 samples resolve 7 cycles along an axis, and 7 √3 = 12.1 along the diagonal. The 8th is Nyquist's, which bends no
+// light.
 TEST(Extremes, ALowestWavenumberBeyondNyquistIsRefused) {
     for (const double lowest : {0.0, 2.0, 7.0, 12.1}) {
         const TurbulenceSpec spec = paper_lattice(lowest);
@@ -123,7 +125,7 @@ TEST(Extremes, ALowestWavenumberBeyondNyquistIsRefused) {
         {"lowest_wavenumber", "1e+12", "64 x 64"});
 }
 
-// Slabs fill the path for every ratio of its length to L0, and no screen asks for more than fits.
+// Slabs fill the path for every ratio of its length to L0. No screen needs more memory than there is.
 TEST(Extremes, ScreensAreLaidOutForEveryLengthAndScale) {
     for (const double far : {1e-6, 1.0, 1e3, 1e9, 1e12})
         for (const double L0 : {1e-6, 1.0, 1e6, 1e12})
@@ -150,7 +152,8 @@ TEST(Extremes, ScreensAreLaidOutForEveryLengthAndScale) {
                 }
 }
 
-// Every length times a power of two is the same air (k, x and the period scale alike, Cn² by length^(-2/3)).
+// Multiplying every length by a power of two gives the same air (k, x and the period scale alike, Cn² by
+// length^(-2/3)).
 TEST(Extremes, GradientNoiseAndLatticesHaveNoScaleOfTheirOwn) {
     const auto scaled = [](double s) {
         TurbulenceSpec spec;

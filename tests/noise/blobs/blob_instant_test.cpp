@@ -1,4 +1,4 @@
-// Sums of blobs at a point against brute force: values, derivatives, steps and free ways.
+// Sums of blobs at a point, compared with brute force: values, derivatives, steps and free ways.
 #include "noise/blobs/blob_instant.h"
 
 #include <gtest/gtest.h>
@@ -110,7 +110,7 @@ TEST(BlobInstant, StepsAndWaysMissNothing) {
             EXPECT_NEAR(instant.longest_step(x), step, 1e-12);
             const double found = instant.clear_way(x, d);
             EXPECT_TRUE(found == way || std::abs(found - way) < 1e-8) << found << " " << way;
-            // nothing before it, and no way left at its end
+            // There is no blob before it, and no way is left at its end.
             for (int s = 0; found > 0 && s < 20; ++s)
                 EXPECT_EQ(instant.sample(x + std::min(found, 30.0) * (1 - 1e-9) * (s / 20.0) * d).n, 0);
             if (found < kInfinity) {

@@ -149,8 +149,8 @@ TEST(BlobKernel, GaussianTails) {
     EXPECT_NEAR(moment, 0.5, 1e-15);
 }
 
-// Twelve decades of every parameter. The result is not zero only if |b| and the distance to the blob are below about 27
-// σ. The five kinds of ray make sure that most rays are such.
+// Parameters over twelve decades. The result differs from zero only if |b| and the distance to the blob are below about
+// 27 σ. The five kinds of ray make sure that this holds for most rays.
 TEST(BlobKernel, DefinitionOverTwelveDecades) {
     Random random(3);
     double worst = 0;
@@ -203,8 +203,8 @@ TEST(BlobKernel, BordersBetweenForms) {
     }
 }
 
-// A large exponent, and a strength that brings the result back from underflow. J2 and dJ2 have one sign, so the error
-// is relative.
+// A large exponent, with a strength that brings the result back from underflow. J2 and dJ2 have the same sign, so the
+// error is relative.
 TEST(BlobKernel, ExtremesKeepTheirDigits) {
     constexpr double kSide = 26.7;  // e^-713
     EXPECT_LT(worst_error(1, 1e10, kSide, 0.3, 2), kBlobKernelError);
@@ -345,8 +345,8 @@ TEST(BlobAppendixA, PrintedDerivativeOfTheProfileLacksAFactor) {
     }
 }
 
-// The form of the appendix cancels even after correction, for short rays and for blobs behind, beyond and far away.
-// Ours does not.
+// The form of the appendix loses digits even after correction, for short rays and for blobs behind, beyond and far
+// away. Ours does not.
 TEST(BlobAppendixA, CorrectedButNotRearrangedFailsAtTheExtremes) {
     struct Case {
         const char* what;

@@ -89,7 +89,8 @@ TEST(BlobCloud, NothingToEmitIsEmpty) {
 }
 
 TEST(BlobCloud, BirthsAreOneAnIntervalForEver) {
-    // Over any window the number alive is rate × lifetime within two; the places fill the segment evenly.
+    // The number of blobs alive is rate × lifetime within two, in any window of time. Their places fill the segment
+    // evenly.
     BlobsSpec spec = plume();
     spec.wind.reset();
     spec.sources[0].lifetime = 10;
@@ -165,7 +166,7 @@ TEST(BlobCloud, CooledBlobsHaveNoIndex) {
 }
 
 TEST(BlobCloud, NothingPopsFromFrameToFrame) {
-    // A thousandth of a second moves no blob far; the whole heat changes smoothly through births and deaths.
+    // In a thousandth of a second no blob moves far. The total heat changes smoothly through births and deaths.
     BlobsSpec spec = plume();
     spec.sources[0].cooling = 0;
     spec.sources[0].growth = 0;

@@ -30,7 +30,7 @@ WindSpec wind_spec() {
 }
 
 TEST(Eddies, RmsOfEachComponentIsOne) {
-    // About 10³ independent cells a realisation, 300 of them: far below 1 %; between the nodes as well.
+    // There are about 10³ independent cells in each of 300 realisations. The error is far below 1 %, between nodes too.
     std::array<double, 3> sum{};
     double count = 0;
     for (std::uint64_t seed = 0; seed < 100; ++seed) {

@@ -1,5 +1,5 @@
-// The elementary functions against the C library's long double, over ranges and to the errors that their header states;
-// and the guarantee that both versions of EIKONAL_CLONES return the same bits.
+// The elementary functions, compared with the C library's long double over the ranges and to the errors that their
+// header states. Both versions of EIKONAL_CLONES must return the same bits.
 #include "noise/math/portable_math.h"
 
 #include <gtest/gtest.h>
@@ -115,7 +115,7 @@ TEST(Dispatch, ClonesReturnTheSameBits) {
     EXPECT_EQ(a, b);
 }
 
-// Fixed values: any processor, compiler flag or library that changes a bit shows here.
+// Fixed values. A processor, compiler flag or library that changes a bit fails here.
 TEST(Dispatch, GaussiansAreTheSameEverywhere) {
     std::vector<float> one(1000, 1.0F), a(1000), b(1000);
     std::vector<std::uint32_t> counter(1000);

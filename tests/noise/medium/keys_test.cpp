@@ -1,4 +1,4 @@
-// Key lists without any file format: what a reader is asked for, rules, and what a program that shows keys sees.
+// Key lists without any file format: what a reader is asked for, the rules, and what a program that shows keys gets.
 #include "noise/medium/keys.h"
 
 #include <gtest/gtest.h>
@@ -303,8 +303,7 @@ TEST(Ranges, SayWhatIsAllowed) {
 
 // ---- the lists of the media ----
 
-/// Every number of a list and of the tables within lies in the range that its key states, and every key says what it
-/// is.
+/// Every number of a list and of its tables lies in the range that its key states. Every key has a meaning.
 void check(const Keys& list) {
     for (const Key& one : list) {
         EXPECT_FALSE(one.help().empty()) << one.name();

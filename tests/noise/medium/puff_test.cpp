@@ -48,7 +48,7 @@ dvec2 closed_form(const Camera& camera, const PuffSpec& puff, int x, int y) {
     return image_shift(camera, ray, bend.x1) / kDistance;
 }
 
-// Eq. 7 has a closed form for a Gaussian: the default bend, which integrates, is held against it.
+// Eq. 7 has a closed form for a Gaussian. The default bend, which is an integral, is compared with it.
 TEST(Puff, IsWarpedWithinTheStatedErrorOfTheDefaultBend) {
     const Scene scene = puff_scene();
     const auto& puff = *scene.media[0].get_if<PuffSpec>();

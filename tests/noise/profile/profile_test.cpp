@@ -1,4 +1,4 @@
-// Profiles against their formulas and derivatives, and where they leave no index.
+// Profiles, compared with their formulas and derivatives, also where they have no index.
 #include "noise/profile/profile.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ ProfileSpec spec_of(ProfileKind kind) {
     return s;
 }
 
-/// n of the contract's table, in 80 bits.
+/// n by the table in profile.h, in 80 bits.
 long double exact(const ProfileSpec& s, const Vec& x) {
     Vec v;
     long double along = 0, r2 = 0;
@@ -158,7 +158,7 @@ TEST(Profile, EdgesAreWhereTheForceJumps) {
             }
             d = glm::normalize(d);
             EXPECT_GT(profile.scale(x), 0);
-            // Every jump along 12 m is announced: going from edge to edge with probes between.
+            // Every jump along 12 m is found in advance. The test goes from edge to edge with probes between them.
             const double clear = profile.clear_way(x, d);
             double w = 0;
             while (w < 12) {

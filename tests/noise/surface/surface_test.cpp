@@ -1,4 +1,4 @@
-// Air over a heated plane against long double, over all ranges; the critical angle.
+// Air over a heated plane, compared with long double over all ranges; the critical angle.
 #include "noise/surface/surface.h"
 
 #include <gtest/gtest.h>

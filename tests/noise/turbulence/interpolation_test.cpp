@@ -1,5 +1,5 @@
-/// The error of interpolation by a lattice's spline: in the force, in the rays that it bends, and against what was
-/// asked.
+/// The error of interpolation by a lattice's spline: in the force, in the rays that it bends, and compared with the
+/// error that was allowed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,8 @@ TEST(Interpolation, IsAsNearTheSumAsStated) {
     EXPECT_EQ(Air({SurfaceSpec{}}, {}, {.memory_limit = kMemory}).interpolation_error(), 0);
 }
 
-// Integrals along straight rays through a spline, and through one so fine that it equals the sum, by the midpoint rule.
+// Integrals along straight rays through a spline are compared with those through a spline so fine that it equals the
+// sum. Both are computed by the midpoint rule.
 TEST(Interpolation, MovesRaysByWhatIsStated) {
     TurbulenceSpec spec = air();
     spec.lattice = {16, 16, 16, 1};

@@ -1,4 +1,4 @@
-/// The lattice against its own discrete expectation, in space and in time.
+/// The lattice compared with its own discrete expectation, in space and in time.
 ///
 /// Statistical tests pool a sum of many squared Gaussians, whose z-score is known, and compare it with kWorstZ: the
 /// two-sided 1e-4 quantile after Bonferroni's correction for some 200 comparisons. Seeds are fixed.
@@ -111,7 +111,8 @@ TEST(Lattice, ModePowerIsChiSquareForEveryAlphaAndInstant) {
 }
 
 TEST(Lattice, ModesLoseTheirMemoryAsAGaussian) {
-    // discrete against exp(-αk²t²/4) where the lattice resolves both width and period of the correlation
+    // The discrete correlation is exp(-αk²t²/4) if the lattice resolves both the width and the period of the
+    // correlation.
     TurbulenceSpec spec = air(1, 0.02);
     const LatticeGeometry g{{8, 8, 8, 64}, {1, 1, 1, 20}};
     const LatticeField field(spec, g);
@@ -262,7 +263,7 @@ TEST(Lattice, ForceHasNoCurl) {
     }
 }
 
-// F is ik n̂ below Nyquist and zero at Nyquist. n has both. The continuous field has this F at its nodes.
+// F is ik n̂ below Nyquist and zero at Nyquist, while n has both. The continuous field has this F at its nodes.
 TEST(Lattice, NyquistModesCountInTheIndexAndBendNoLight) {
     TurbulenceSpec spec = air();
     spec.spectrum = SpectrumKind::Paper;  // power up to Nyquist

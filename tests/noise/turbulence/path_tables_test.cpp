@@ -1,5 +1,6 @@
-// Path tables against Eq. 7 integrated along straight rays through the trigonometric sum (its own double-precision
-// code), the kernel h(k, u) against quadrature in long double, and the aperture's jinc against its integral.
+// Path tables, compared with Eq. 7 integrated along straight rays through the trigonometric sum (its own
+// double-precision code); the kernel h(k, u), compared with quadrature in long double; the aperture's jinc, compared
+// with its integral.
 #include "noise/turbulence/lattice/path_tables.h"
 
 #include <gtest/gtest.h>
@@ -215,7 +216,7 @@ TEST(PathTables, SliceIsTheForceOnItsPlane) {
     }
 }
 
-// Ensemble of realisations against the discrete expectation; 40 seeds × all nodes of a table.
+// An ensemble of realisations, compared with the discrete expectation: 40 seeds × all nodes of a table.
 TEST(PathTables, VarianceIsTheDiscreteExpectationWithAndWithoutAperture) {
     const LatticeGeometry g{{12, 10, 14, 1}, {1.0, 1.3, 0.9, 2.0}};
     for (const double aperture : {0.0, 0.25})

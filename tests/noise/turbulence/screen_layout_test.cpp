@@ -1,4 +1,4 @@
-/// Where thin screens stand, and what settings are refused.
+/// The positions of thin screens, and the settings that are refused.
 #include "noise/turbulence/screens/screen_layout.h"
 
 #include <gtest/gtest.h>

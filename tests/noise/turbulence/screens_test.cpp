@@ -1,4 +1,5 @@
-/// Thin screens against closed forms of the continuum and against their own discrete expectation, in space and in time.
+/// Thin screens, compared with closed forms of the continuum and with their own discrete expectation, in space and
+/// time.
 #include "noise/turbulence/screens/screens.h"
 
 #include <gtest/gtest.h>
@@ -105,7 +106,7 @@ TEST(Screens, DiscreteExpectationIsTheContinuum) {
             }
 }
 
-// The parts that cells of any size hold and leave out add up to the continuum.
+// The parts that cells of any size contain and leave out add up to the continuum.
 TEST(Screens, WhatCellsLeaveOutIsKnown) {
     for (const double aperture : {0.0, 0.05})
         for (const double pixel : {1e-3, 5e-3, 0.02, 0.1}) {

@@ -1,4 +1,4 @@
-// Spectra against their defining integrals: the Kolmogorov constant, the slopes, the cut-offs.
+// Spectra, compared with their defining integrals: the Kolmogorov constant, the slopes, the cut-offs.
 #include "noise/turbulence/parameters/spectrum.h"
 
 #include <gtest/gtest.h>

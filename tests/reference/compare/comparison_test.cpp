@@ -1,6 +1,6 @@
-/// The warp judged by the tracer: statistics, picture errors and silhouettes against values worked out by hand, the
-/// frontier, the page, and scenes whose errors are known.
-/// Length: one case a measure, and the scenes that need them all.
+/// The comparison of the warp with the tracer. Statistics, picture errors and silhouettes are compared with values
+/// worked out by hand. The frontier and the page are tested, and scenes whose errors are known. Length: one case a
+/// measure, and the scenes that all of them need.
 #include "reference/compare/comparison.h"
 
 #include <gtest/gtest.h>
@@ -76,8 +76,8 @@ TEST(PictureError, SeesOtherColours) {
     EXPECT_GT(picture_error(red, blue, kSide, kSide).butteraugli, 10);
 }
 
-// A tenth of a code in 255 goes unnoticed, ten do not; a displacement is noticed the more the larger it and the
-// contrast are; either picture may come first.
+// A difference of a tenth of a code in 255 goes unnoticed; one of ten codes does not. A displacement is noticed the
+// more, the larger it is and the higher the contrast. The order of the pictures does not matter.
 TEST(PictureError, SeesOtherGreys) {
     constexpr int kSide = 64;
     const auto distance = [](const std::vector<float>& a, const std::vector<float>& b) {
@@ -142,7 +142,7 @@ TEST(Silhouettes, AreJumpsOfDepthAndNoSlopes) {
             const int beside = std::max(0, std::abs(x - 10) - 1);  // the post and its neighbours are beside the edge
             EXPECT_EQ(post[static_cast<std::size_t>(y * kWidth + x)], beside) << x << ", " << y;
         }
-    // what is a plane in depth is none to parallel rays if it is one in inverse depth, and the other way round
+    // On a plane the depths are linear in x for parallel rays. In perspective the inverse depths are.
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
             depth[static_cast<std::size_t>(y * kWidth + x)] = 1 + 2 * static_cast<float>(x);
@@ -316,7 +316,7 @@ TEST(Comparer, WithoutAirNothingDiffers) {
     EXPECT_GT(c.tracer_seconds, 0);
 }
 
-// Strong air: what second order follows is what the tracer follows, and what the warp says of itself is true.
+// Strong air. Second order gives what the tracer gives, and the error that the warp states is true.
 TEST(Comparer, SecondOrderIsTheTruthAndStatedErrorsHold) {
     Scene scene = wall();
     scene.optics.exaggeration = 300;
@@ -338,7 +338,7 @@ TEST(Comparer, SecondOrderIsTheTruthAndStatedErrorsHold) {
     }
 }
 
-// Weak air: nothing is left of the second order, and what map and judge share, the lattice's spline, is what counts.
+// Weak air. The second order is negligible. What counts is the lattice's spline, which the map and its judge share.
 TEST(Comparer, StatedErrorsHoldInWeakLattices) {
     Scene scene = wall();
     TurbulenceSpec air;
@@ -376,7 +376,7 @@ TEST(Comparer, ABlobIsFollowedByTheDefaultAndNotByThePlate) {
     const auto row = [&](std::string_view name) {
         return *std::find_if(c.models.begin(), c.models.end(), [&](const ModelResult& m) { return m.name == name; });
     };
-    // the plate's error is the true displacement itself
+    // The error of the plate is the true displacement itself.
     for (std::size_t i = 0; i < frame.truth.u.size(); ++i)
         ASSERT_NEAR(frame.models.front().error[i], std::hypot(frame.truth.u[i], frame.truth.v[i]), 1e-6);
     EXPECT_NEAR(row("none").all.largest, c.largest, 1e-6);

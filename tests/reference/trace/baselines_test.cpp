@@ -1,5 +1,5 @@
-/// Rays over a heated surface: mirages in closed form, and the baselines that the paper names (layers, mirror) against
-/// the bent ray.
+/// Rays over a heated surface: mirages in closed form, and the baselines that the paper names (layers, mirror),
+/// compared with the bent ray.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ Bounce bounce(const TestAir& air, double start_height, double angle) {
 
 TEST(Mirage, SmallDropoffIsAMirrorLargeAParabola) {
     const double B = -index_law(at_zero()).above_ambient(305), angle = 0.5 * std::sqrt(2 * B);
-    {  // Fig. 2, mirror: the outgoing leg continues the mirrored incoming one to a few dropoffs.
+    {  // Fig. 2, mirror: the outgoing part continues the mirrored incoming part to a few dropoffs.
         const TestAir air({road(1e-4)}, at_zero());
         const Bounce b = bounce(air, 0.1, angle);
         EXPECT_NEAR(b.after.p.y / b.after.p.x, std::tan(angle), 1e-9);
@@ -100,7 +100,7 @@ TEST(Mirage, LayersConvergeToTheBentRay) {
         before = off;
     }
     EXPECT_LT(before, 2e-3);
-    // It turns at a boundary, anywhere in a slice: of order 1/2 in the worst of many thicknesses.
+    // The ray turns at a boundary or anywhere in a slice. The order is 1/2 in the worst of many thicknesses.
     const auto worst = [&](double slice) {
         double off = 0;
         for (int i = 0; i < 24; ++i)
@@ -109,7 +109,7 @@ TEST(Mirage, LayersConvergeToTheBentRay) {
     };
     const double thick = worst(1e-3), thin = worst(1e-3 / 64);
     EXPECT_NEAR(std::log2(thick / thin) / 6, 0.5, 0.15);
-    // A ray through all slices: order 2.
+    // The ray crosses all slices. The order is 2.
     const auto crossing = [&](Integrator integrator, double step) {
         TraceSettings settings = finest();
         settings.integrator = integrator;

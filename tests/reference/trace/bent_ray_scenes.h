@@ -77,7 +77,7 @@ inline TraceSettings finest() {
     return settings;
 }
 
-/// Settings with the tolerance of a usual render.
+/// Settings with the default tolerance of a render.
 inline TraceSettings usual() {
     TraceSettings settings;
     settings.pixel = 4e-4;

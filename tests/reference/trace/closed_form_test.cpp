@@ -61,7 +61,7 @@ TEST(ClosedForm, LinearSquaredIsAParabola) {
     for (const double u : {0.3, 1.0, 4.0})
         EXPECT_LE(distance(end_of(air, {0, 0, 0}, {1, 0, 0}, finest(), u), {u, 0, u * u / 4}, {1, 0, u / 2}),
                   kClosedFormError);
-    // Against it: down to where it turns back at z = -sin², and up again.
+    // Against the gradient: down to z = -sin², where it turns back, and up again.
     const double s = 0.6, c = 0.8;
     EXPECT_LE(distance(end_of(air, {0, 0, 0}, {c, 0, -s}, finest(), 4 * s), {4 * s * c, 0, 0}, {c, 0, s}),
               kClosedFormError);

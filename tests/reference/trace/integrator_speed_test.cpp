@@ -39,7 +39,7 @@ struct Shot {
         return glm::normalize(dvec3(0.02 * std::cos(2.4 * i), 0.02 * std::sin(2.4 * i), -1));
     }
     BentHit trace_one(int i) const { return trace(now, &wall, dvec3(0), direction(i), settings); }
-    /// Worst distance between two ways of tracing the same rays [px].
+    /// Largest distance between the ends of the same rays, traced with two settings [px].
     double off(const TraceSettings& one, const TraceSettings& other) {
         double worst = 0;
         for (int i = 0; i < 40; ++i) {
@@ -54,7 +54,7 @@ struct Shot {
     }
 };
 
-/// 200 blobs of 10 to 20 cm along the way.
+/// 200 blobs of 10 to 20 cm along the ray.
 BlobsSpec crowd(double temperature) {
     BlobsSpec spec;
     for (int i = 0; i < 200; ++i) {
@@ -116,7 +116,7 @@ TEST(Strides, AreLongButPassNoBlobOver) {
     }
 }
 
-// Above its layer a surface's force has an endless tail. That air must still count as straight.
+// The force of a surface has an endless tail above it. There the air must still count as straight.
 TEST(Strides, AreOneBeyondALayerOfAnyMedia) {
     SurfaceSpec surface;
     surface.surface_temperature = 330;
@@ -163,7 +163,7 @@ TEST(KnownOrigin, ChangesNoBit) {
             EXPECT_EQ(a.at.x, b.at.x);
             EXPECT_EQ(a.at.p, b.at.p);
             EXPECT_EQ(a.hit, b.hit);
-            // Settings whose known origin is another place give the same result.
+            // Settings that were made for another origin must give the same result.
             const dvec3 beside = eye + dvec3(0.5, 0, 0);
             EXPECT_EQ(trace(now, &geometry, beside, d, plain).at.x, trace(now, &geometry, beside, d, known).at.x);
         }

@@ -1,5 +1,5 @@
-/// Bent rays: order and error of every integrator, perturbation theory, edges, and rays that must neither hang nor pass
-/// over thin things.
+/// Bent rays: order and error of every integrator, perturbation theory and edges. No ray may run for ever or step over
+/// a thin medium.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -87,7 +87,7 @@ TEST(Tolerance, BoundsTheErrorAndIsReported) {
     EXPECT_LE(glm::length(hit.at.x - dvec3(-1, 0, 0)), settings.tolerance_px * settings.pixel);
 }
 
-// Among blobs, steps are as long as a blob. The steps' estimates do not see what the steps miss.
+// Among blobs, steps are as long as a blob. The estimates of the steps do not contain what lies between the steps.
 TEST(Tolerance, TheErrorIsNoLessThanItIsSaidToBe) {
     BlobsSpec blobs;
     blobs.blobs = {{{0, 0.8, -30}, 0.3, 600}, {{0.4, 0.7, -60}, 0.2, 700}, {{-0.6, 0.5, -50}, 0.25, 500}};
@@ -220,14 +220,14 @@ TEST(Steps, TrappedRaysEnd) {
         EXPECT_EQ(hit.end, BentHit::End::Unfinished);
         EXPECT_EQ(hit.steps, 500);
         EXPECT_TRUE(std::isfinite(hit.at.x.x + hit.at.p.x + hit.error_px));
-        // If it may, it ends sooner: after 32 turns.
+        // If it is allowed to, the ray ends sooner, after 32 turns.
         settings.end_trapped = true;
         settings.step_budget = 100000;
         const BentHit seen = trace(air.now, nullptr, {1, 0, 0}, {0, 1, 0}, settings);
         EXPECT_EQ(seen.end, BentHit::End::Trapped);
         EXPECT_LE(seen.steps, 8 * 250);
     }
-    // A ray in a guide at 80 degrees to the axis makes headway, however often it turns.
+    // A ray in a guide at 80 degrees to the axis advances, however often it turns.
     ProfileSpec rod = profile(ProfileKind::Rod);
     rod.n0 = 1.5;
     rod.g = 0.3;
@@ -240,8 +240,8 @@ TEST(Steps, TrappedRaysEnd) {
     EXPECT_EQ(far.end, BentHit::End::Surface);
 }
 
-// Air from mere shimmer to one where every ray is trapped. Rays that arrive are the same with and without the early
-// end.
+// Air from weak shimmer to air in which every ray is trapped. Rays that arrive are the same with and without the early
+// end of trapped rays.
 TEST(Steps, OnlyTrappedRaysAreEndedEarly) {
     const auto wall = geometry({plane({0, 0, -3}, {0, 0, 1})});
     int arrived = 0, ended = 0;

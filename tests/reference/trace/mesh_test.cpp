@@ -1,4 +1,4 @@
-/// Meshes and scenes: what their files may hold, and what an error names.
+/// Meshes and scenes: the allowed content of their files, and the place that an error names.
 #include "reference/trace/mesh.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST_F(ReferenceTest, BadScenesNameWhatIsWrong) {
     expect_user_error([&] { Renderer(sky, straight(1)); }, {"background.image", "gone.exr"});
 }
 
-// The library that reads meshes would take these numbers for 0.
+// The library that reads meshes would read these words as the number 0.
 TEST_F(ReferenceTest, NumbersOfAMeshThatAreNoneNameTheirLine) {
     // Lines may go on: those after them keep their numbers.
     const std::string good =

@@ -1,4 +1,4 @@
-/// Neighbours of a bent ray (ray differentials) against rays traced beside it, and against closed forms.
+/// Neighbours of a bent ray (ray differentials), compared with rays traced beside it and with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ TEST(Differentials, AgreeWithNeighbouringRays) {
 }
 
 TEST(Differentials, PassJumpsOfTheForce) {
-    // All parallel rays meet in Luneburg's focus: the bundle is nothing there and has folded behind it.
+    // All parallel rays meet in Luneburg's focus. The cross-section of the bundle is zero there and negative behind it.
     const TestAir air({profile(ProfileKind::Luneburg)});
     for (const double y : {0.0, 0.3, -0.6}) {
         Bundle pixels;
@@ -83,13 +83,14 @@ TEST(Differentials, MagnifyAndFold) {
         const BentHit end = trace(air.now, nullptr, {0, 0, 0}, {1, 0, 0}, settings, &bundle);
         EXPECT_NEAR(magnification(parallel, {1, 0, 0}, end.at, bundle, end.length), 2, 2 * kBundleError);
     }
-    // Nothing bends: 1.
+    // Without any bend the magnification is 1.
     const TestAir none({});
     const Bundle fan = pixels_of({0, 0, 1}, {0, 1, 0});
     Bundle bundle = fan;
     const BentHit end = trace(none.now, nullptr, {0, 0, 0}, {1, 0, 0}, usual(), &bundle);
     EXPECT_NEAR(magnification(fan, {1, 0, 0}, end.at, bundle, end.length), 1, 1e-14);
-    // A mirage's picture is upside down, a ray above it not; by how much, the neighbours tell.
+    // The picture of a mirage is upside down, and that of a ray above it is not. Neighbouring rays give the
+    // magnification.
     const TestAir hot({road(0.01)}, at_zero());
     const auto wall = geometry({plane({600, 0, 0}, {-1, 0, 0})});
     const double critical = std::sqrt(-2 * index_law(at_zero()).above_ambient(305));

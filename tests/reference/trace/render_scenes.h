@@ -90,7 +90,7 @@ inline void expect_finite(const RenderedFrame& frame) {
         for (const float value : *plane) ASSERT_FALSE(std::isnan(value));
 }
 
-/// Mirage of a hot road: the far wall's lower part is seen mirrored.
+/// Mirage of a hot road, in which the lower part of the far wall appears mirrored.
 inline Scene mirage() {
     Scene scene = scene_with({quad({0, 0, -400}, {0, 0, 1}, 100)}, 2);
     scene.objects.emplace_back();  // the road, a plane

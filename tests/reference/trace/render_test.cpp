@@ -1,6 +1,6 @@
-/// Pictures through bent air against closed forms: displacements, mirages, lenses, mirrors and glass; the marks of rays
-/// that have no end; and the same bytes for any number of threads.
-/// Length: each effect needs a scene of its own, whose picture is known in closed form.
+/// Pictures through bent air, compared with closed forms: displacements, mirages, lenses, mirrors and glass; the marks
+/// of rays that have no end; and the same bytes for any number of threads. Length: each effect needs a scene of its
+/// own, whose picture is known in closed form.
 #include "reference/trace/render.h"
 
 #include <fmt/format.h>
@@ -110,7 +110,7 @@ TEST(Render, MirageShowsTheWallBelowTheHorizon) {
     EXPECT_GT(bent.magnification[at(kWidth / 2, 0)], 0);
 }
 
-// The shortcuts over a lone surface change nothing beyond the tolerance.
+// The shortcuts for a scene of one surface change nothing beyond the tolerance.
 TEST(Render, LoneSurfaceGivesWhatTheFieldGives) {
     const Scene scene = mirage();
     for (const Integrator integrator : {Integrator::Adaptive, Integrator::FirstOrder}) {
@@ -189,7 +189,8 @@ TEST(Render, RaysWithoutAnEndAreMarkedAndBlack) {
     for (std::size_t i = 0; i < frame.color.size(); ++i) EXPECT_EQ(frame.color[i], i % 4 == 3 ? 1.0f : 0.0f);
 }
 
-// The steps that a tried ray would still take are estimated from the air ahead: here a layer that ends at some height.
+// The number of steps that a probed ray still needs is estimated from the air ahead. Here that is a layer of some
+// height.
 TEST(Render, AProbeKnowsTheStepsToCome) {
     Scene scene = scene_with({quad({0, 0, -300}, {0, 0, 1}, 10)}, 20);
     TurbulenceSpec air;
@@ -310,7 +311,8 @@ TEST(Render, AGlassSphereRefractsBySnell) {
     }
 }
 
-// Air in which rays fold spreads their errors. The rays' own estimates do not show it. Rays that are tried again do.
+// Air in which rays fold magnifies their errors. The rays' own estimates do not show it, but rays that are traced again
+// do.
 TEST(Render, TellsWhereTheAirSpreadsErrors) {
     for (const bool strong : {false, true}) {
         TurbulenceSpec air;

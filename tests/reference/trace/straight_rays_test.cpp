@@ -1,5 +1,5 @@
-/// The renderer with straight rays: depth against closed forms, pixels against the camera, and the same bytes for any
-/// number of threads.
+/// The renderer with straight rays: depth compared with closed forms, pixels compared with the camera, and the same
+/// bytes for any number of threads.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
@@ -114,7 +114,7 @@ TEST_F(ReferenceTest, HitsAreSolvedInDouble) {
     }
 }
 
-/// Far from the origin of the world a float would be 8 mm off; the anchor keeps the answer exact.
+/// Far from the origin of the world a float has an error of 8 mm. The anchor keeps the depth exact.
 TEST_F(ReferenceTest, FarFromTheOriginOfTheWorld) {
     ObjectSpec sphere;
     sphere.shape = ObjectShape::Sphere;
@@ -170,7 +170,7 @@ TEST_F(ReferenceTest, PixelsAndGeometryAgree) {
     }
 }
 
-/// The texture's left and upper half on a quad that the camera faces.
+/// A texture appears upright on a quad that faces the camera: its left half on the left, its upper half above.
 TEST_F(ReferenceTest, TextureIsUpright) {
     LinearImage image{{0, 0, 2, 2}, {0, 0, 2, 2}, 1, {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 1, 1, 1, 1}};
     write_picture(folder_ / "corners.exr", picture_from_linear(image, folder_ / "corners.exr", false, 32));
@@ -261,8 +261,8 @@ TEST_F(ReferenceTest, WrittenFileHoldsHalfColorAndExactDepth) {
     }
 }
 
-// A slab of thickness t, met at the angle θ, shifts a ray sideways by t sin θ (1 - cos θ/√(n² - sin² θ)) and leaves its
-// direction. Seen through it, the edge between two screens has moved by that much, wherever the screens stand.
+// A slab of thickness t, entered at the angle θ, shifts a ray sideways by t sin θ (1 - cos θ/√(n² - sin² θ)) and leaves
+// its direction. Seen through it, the edge between two screens moves by that much at any distance of the screens.
 TEST_F(ReferenceTest, AGlassSlabShiftsARaySideways) {
     constexpr double t = 0.3, n = 1.5;
     constexpr double kOff = 4e-5;  // Geometry::leave starts 13 µm off each surface

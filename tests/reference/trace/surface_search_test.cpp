@@ -1,4 +1,4 @@
-/// Surfaces that bent rays meet, graze or pass.
+/// Objects that bent rays meet, touch or miss.
 #include "reference/trace/surface_search.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(Surfaces, GrazedAreMetOrPassed) {
             EXPECT_NEAR(hit.at.u, 2 * s - 2 * std::sqrt(-gap), 1e-8) << gap;
         }
     }
-    // A ball that chords of the curve cut but the curve passes, and a ball that the curve just touches.
+    // One ball is cut by chords of the curve, but not by the curve. Another is just touched by the curve.
     for (const double gap : {1e-4, -1e-4}) {
         const dvec3 lowest{2 * s * c, 0, -s * s};
         const auto ball = geometry({sphere(lowest + dvec3(0, 0, 0.01 + gap), 0.01)});

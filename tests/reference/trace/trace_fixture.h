@@ -9,7 +9,7 @@
 
 namespace eikonal::reference {
 
-/// Straight rays.
+/// Settings for straight rays.
 inline RenderSettings straight(int samples) {
     RenderSettings settings;
     settings.samples = samples;

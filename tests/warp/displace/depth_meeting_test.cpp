@@ -1,4 +1,4 @@
-// Where bent rays meet the depth buffer: silhouettes, slopes, and the three ways compared.
+// Bent rays and the depth buffer: silhouettes, slopes, and the three methods compared.
 #include "warp/displace/depth/depth_meeting.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST(DepthMeeting, ConstantDepthIsTheSameForAll) {
         }
 }
 
-/// A post 5 m away, still (the bend is at 5 m), before a wall at 300 m that moves by 4 px.
+/// A post 5 m away does not move, since its ray bends at 5 m. The wall behind it at 300 m moves by 4 px.
 TEST(DepthMeeting, ForegroundStaysStillAndIsNeverDragged) {
     const auto post = [](int x) { return x >= 20 && x < 26; };
     const DepthPlane depth = plane_of([&](int x, int) { return post(x) ? 5.0 : 300.0; });
@@ -100,7 +100,7 @@ TEST(DepthMeeting, ForegroundStaysStillAndIsNeverDragged) {
                     EXPECT_FALSE(post(static_cast<int>(std::floor(source)))) << x << ' ' << a;
                     EXPECT_FALSE(post(static_cast<int>(std::ceil(source)))) << x << ' ' << a;
                 }
-                // far from the post nothing is held back, but the pixels beside it, its edge, stay with it
+                // Far from the post the wall moves freely. The pixels beside the post, its edge, stay with the post.
                 if (std::abs(x - 23) > 3 + std::abs(a) + 2 || ((x - 23) * a > 0 && x != 19 && x != 26)) {
                     EXPECT_NEAR(d.x, wall, 1e-4) << x << ' ' << a;
                 }
@@ -112,7 +112,7 @@ TEST(DepthMeeting, ForegroundStaysStillAndIsNeverDragged) {
     }
 }
 
-/// A ray that swerves aside and back must stop at the post it crosses on the way, though the wall behind is clear.
+/// A ray that swerves aside and back must stop at the post that it crosses, although the wall behind it is visible.
 TEST(DepthMeeting, MarchFindsWhatStandsInTheWay) {
     const DepthPlane depth = plane_of([](int x, int) { return x >= 20 && x < 26 ? 20.0 : 300.0; });
     // d rises to 8 px at 30 m and falls to 0 at 300 m
@@ -134,7 +134,8 @@ TEST(DepthMeeting, MarchFindsWhatStandsInTheWay) {
     EXPECT_NEAR(map.at(30, 10).x, 0, 0.01) << "nothing in the way";
 }
 
-/// Ground that recedes upwards: the first z at which the facet under the ray is no farther than z, by brute force.
+/// Ground that recedes upwards. The result is the first z at which the facet under the ray is no farther than z, found
+/// by brute force.
 TEST(DepthMeeting, SlopedGroundIsTheFirstRoot) {
     const auto ground = [](int, int y) { return 1200.0 / (y + 12); };
     const DepthPlane depth = plane_of(ground);
@@ -152,7 +153,7 @@ TEST(DepthMeeting, SlopedGroundIsTheFirstRoot) {
                 if (clamped(y + expected) <= z) break;
             }
             EXPECT_NEAR(march.at(7, y).y, expected, kMarchError + 2e-4 * std::abs(a)) << a << ' ' << y;
-            // the fixed point is another answer only where facets leave it none to settle on
+            // The fixed point differs only where it jumps between facets and does not settle.
             EXPECT_NEAR(fixed.at(7, y).y, expected, 0.02 * std::abs(a)) << a << ' ' << y;
         }
     }

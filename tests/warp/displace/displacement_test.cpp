@@ -1,5 +1,5 @@
-// Displacement maps of every model against quadrature, against each other and against what is expected of them.
-// Length: the models are compared with each other, so they stand in one file.
+// Displacement maps of every model, compared with quadrature, with each other and with the expected variances.
+// Length: the models are compared with each other, so their tests are in one file.
 #include "warp/displace/displacer.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TrigonometricSum trigonometric(const TurbulenceSpec& spec) {
     return {field.spectrum_at(0), field.geometry()};
 }
 
-// Pixels lie between lattice nodes; a step of 1/60 of the path leaves Gauss' rule below 1e-6.
+// Pixels lie between lattice nodes. With steps of 1/60 of the path the error of Gauss' rule is below 1e-6.
 TEST(Displacement, SpectralIsTheQuadratureOfItsLattice) {
     TurbulenceSpec spec = lattice_spec();
     spec.lattice = {{12, 12, 12, 1}};  // term by term, at each of 46080 points
@@ -75,7 +75,7 @@ TEST(Displacement, SpectralIsTheQuadratureOfItsLattice) {
             }
             EXPECT_LT(d.relative(), kPathTableError) << forward.x << forward.y << forward.z << ' ' << D;
         }
-        // a depth plane: between the layers
+        // A depth plane with depths between those of the grid.
         std::vector<float> metres;
         for (std::size_t i = 0; i < kSmall.area(); ++i)
             metres.push_back(0.4f + 1.4f * static_cast<float>(i * 37 % 101) / 101);
@@ -121,7 +121,7 @@ TEST(Displacement, FirstOrderAgreesWithSpectral) {
     EXPECT_LT(difference(a, b), kFirstOrderError * rms(a));
 }
 
-// Power up to Nyquist: an even lattice's Nyquist modes bend light in neither.
+// Power up to Nyquist. The Nyquist modes of a lattice of even size bend light in neither model.
 TEST(Displacement, FirstOrderAgreesWithSpectralOnThePapersSpectrum) {
     TurbulenceSpec spec = lattice_spec();
     spec.spectrum = SpectrumKind::Paper;
@@ -156,7 +156,7 @@ double mean_square_slope(const Map& uv, int width, int height) {
     return sum / ((width - 1) * (height - 1));
 }
 
-// 150 realisations of a few eddies each; narrow, for oblique rays bend more.
+// 150 realisations of a few eddies each. The view is narrow, because oblique rays bend more.
 TEST(Displacement, FocusingIsTheSlopeOfTheMap) {
     for (const bool perspective : {true, false})
         for (const auto form : {TurbulenceForm::Lattice, TurbulenceForm::GradientNoise}) {
@@ -218,7 +218,7 @@ TEST(Displacement, AFrameEndsOnceAStopIsRequested) {
     EXPECT_THROW(map_of(displacer, 1, kSmall, 1.8), FrameError);
 }
 
-// PHYSICS.md#first-order: tables converge on the exact ones at their own depths; the single table is right at `far`
+// PHYSICS.md#first-order. Tables agree with the exact ones at their own depths. The single table is right at `far`
 // only, because displacement grows as u² and then u^(3/2), not as u.
 TEST(Displacement, TablesAreRightWherePromisedAndWrongElsewhere) {
     TurbulenceSpec spec = lattice_spec();
@@ -263,9 +263,9 @@ TurbulenceSpec screen_spec(double L0 = 1e4) {
     return spec;
 }
 
-// Single axis. The map's own weight is 1 - w/D in either projection, so parallel rays count 1.093 in the displacement
-// too; their 3.28 is the angle of arrival, which no displaced object shows (tests/noise/turbulence/screens_test.cpp
-// measures it).
+// Along a single axis. The map's own weight is 1 - w/D in either projection, so that parallel rays, too, have 1.093 in
+// the displacement. Their 3.28 is the angle of arrival, which no displaced object shows; it is measured in
+// tests/noise/turbulence/screens_test.cpp.
 TEST(Displacement, ScreensHaveTheVarianceOfAngleOfArrival) {
     const double L0 = 1e4, far = 12 * L0;
     for (const bool perspective : {true, false}) {
@@ -323,7 +323,7 @@ TEST(Displacement, ExpectedRmsOfRareBlobs) {
     EXPECT_LT(displacer.expected_rms(6), 2.5 * std::sqrt(sum));
 }
 
-// Blobs of a few pixels, wherever they stand: no fixed set of pixels would meet them.
+// Blobs of a few pixels at any place. A fixed set of pixels would miss them.
 TEST(Displacement, ExpectedRmsOfSmallBlobs) {
     Scene scene;
     scene.camera.position = {0, 0, 0};
@@ -363,7 +363,7 @@ TEST(Displacement, DepthPlanesAgreeWithConstantDepth) {
         for (const DepthMeeting how : {DepthMeeting::Own, DepthMeeting::FixedPoint, DepthMeeting::March})
             EXPECT_LT(difference(constant, map_of(displacer, 1, window, flat, how)), 1e-6 * (1 + rms(constant)));
     }
-    // a ramp, pixel by pixel: X is exact between the layers, whatever they are; also where whole slabs lie before it
+    // A ramp of depth, pixel by pixel. X is exact between any depths of the grid, also with whole slabs before them.
     for (const float nearest : {0.5f, 100.0f}) {
         std::vector<float> metres;
         for (std::size_t i = 0; i < window.area(); ++i)

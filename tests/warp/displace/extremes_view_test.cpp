@@ -1,5 +1,5 @@
-// Displacement at the ends of every range (noise/README.md, "Extremes"): against quadrature of Eq. 7 in long double,
-// against the same scene at another scale, or refused.
+// Displacement at the ends of every range (noise/README.md, "Extremes"). It agrees with quadrature of Eq. 7 in long
+// double, or with the same scene at another scale, or it is refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,8 +64,9 @@ double degrees(double slope) {
     return 360 / M_PI * std::atan(slope);
 }
 
-// One blob beside the axis, where it bends most, halfway to the object: closed form in float, and bent rays in double,
-// against quadrature. The picture is the one pixel on the axis, so that the focal length is any number of pixels.
+// One blob beside the axis, where it bends most, halfway to the object. The closed form in float and bent rays in
+// double are compared with quadrature. The picture is the one pixel on the axis, so that any focal length in pixels is
+// possible.
 TEST(Extremes, ABlobOfAnySizeAtAnyDistanceForAnyLens) {
     int seen = 0;
     for (const double sigma : {1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9})
@@ -91,7 +92,7 @@ TEST(Extremes, ABlobOfAnySizeAtAnyDistanceForAnyLens) {
                     EXPECT_EQ(d.y, 0);
                     if (std::abs(exact.x) < 0.05) continue;
                     ++seen;
-                    // where bends are gentle, and a ray's place is known to a part of the blob
+                    // Bends must be gentle, and a ray's place must be exact to a part of the blob.
                     if (T < 1e5 || sigma < 1e-7 * D) continue;
                     settings.model = Model::SecondOrder;
                     const dvec2 bent = shift()[0];
@@ -129,8 +130,8 @@ Map map_at(const Scaled& c, double s, double part) {
     return map_of(Displacer(scene, settings), 13, {0, 0, 12, 9}, D);
 }
 
-// Far at 2e-6 m and at 1e9 m is far at 128 m: all lengths times a power of two, rates unchanged, Cn² times
-// length^(-2/3). Whatever has an absolute length somewhere inside fails.
+// A scene with `far` at 128 m is scaled to 2e-6 m and to 1e9 m. All lengths are multiplied by a power of two, Cn² by
+// length^(-2/3), and rates are kept. Code that contains an absolute length fails.
 TEST(Extremes, DistancesFromAMicrometreToAMillionKilometres) {
     const auto turbulence = [](TurbulenceForm form) {
         return [form](double s) {
@@ -193,7 +194,7 @@ TEST(Extremes, DistancesFromAMicrometreToAMillionKilometres) {
 
 // ---- wide views, long paths ----
 
-// The corner's ray is 140 times as long as the axis', and passes more than ten periods.
+// The ray of the corner is 140 times as long as that of the axis, and crosses more than ten periods.
 TEST(Extremes, AViewOf179DegreesIsTheQuadrature) {
     TurbulenceSpec spec = lattice_spec();
     spec.lattice = {{8, 8, 8, 1}};
@@ -257,7 +258,7 @@ TEST(Extremes, APathOfTwentyPeriodsIsTheQuadratureAndWarnedOf) {
 
 // ---- what is left out, what is refused ----
 
-// However wide the view, a medium that is left out for its weakness would have moved no pixel by more than that.
+// A medium that is left out because it is weak would have moved no pixel by more than the limit, however wide the view.
 TEST(Extremes, WhatIsLeftOutOfAWideViewMovesNothing) {
     for (const auto form : {TurbulenceForm::Screens, TurbulenceForm::Lattice, TurbulenceForm::GradientNoise})
         for (const double fov : {20.0, 150.0, 178.0})

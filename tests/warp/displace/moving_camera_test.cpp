@@ -1,4 +1,4 @@
-// Displacement as a camera moves: consistent from frame to frame (the paper's Fig. 7), and refused where it cannot be.
+// Displacement under a moving camera. It is consistent from frame to frame (the paper's Fig. 7), or it is refused.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ TEST_F(MovingCamera, ASidewaysMoveShiftsAScreenByItsParallax) {
     const Displacer displacer(
         moving(scene, fmt::format("1 0 0 0 0 0 0\n2 {0:.17g} {1:.17g} 0 0 0 0\n", 16 * pixel, 8 * pixel)), settings);
     const Map a = map_of(displacer, 1, {0, 0, 64, 48}, 80), b = map_of(displacer, 2, {-16, 8, 64, 48}, 80);
-    // the slant factor of a ray is its own: a few parts in 10^5 here
+    // Each ray has a slant factor of its own, which differs by a few parts in 10^5 here.
     EXPECT_LT(difference(a, b), 2e-3 * rms(a));
 }
 

@@ -1,4 +1,4 @@
-// Second-order rays, and the error that maps state of themselves.
+// Second-order rays, and the error that maps state.
 // Length: the stated error is judged by the full ray equation, which is tested first.
 #include "warp/displace/models/second_order.h"
 
@@ -101,7 +101,7 @@ std::vector<float> difference(std::vector<float> a, const std::vector<float>& b)
     return a;
 }
 
-// The second-order term is quadratic in the strength of the air, the first linear.
+// The second-order term is quadratic in the strength of the air. The first-order term is linear.
 TEST(SecondOrder, DiffersFromFirstOrderByTheSquareOfTheStrength) {
     const auto gap = [](double strength) {
         const Scene scene = blob_scene(strength);
@@ -115,7 +115,7 @@ TEST(SecondOrder, DiffersFromFirstOrderByTheSquareOfTheStrength) {
     EXPECT_NEAR(strong_gap / weak_gap, 16, 1.6);
 }
 
-// The middle of a very hot blob has no index: no map from there, and no telling what a first-order one is off by.
+// In the middle of a very hot blob n <= 0. There is no map, and the error of a first-order map is unknown.
 TEST(SecondOrder, WithoutAnIndexThereIsNoMap) {
     Scene scene = blob_scene(2e4);
     (*scene.media[0].get_if<BlobsSpec>()).blobs[0].center = scene.camera.position;
@@ -126,7 +126,7 @@ TEST(SecondOrder, WithoutAnIndexThereIsNoMap) {
     EXPECT_EQ(shown_error(stated.largest), "an unknown number of px");
 }
 
-// Every kind of medium: the steps of a map's rays against finer ones.
+// For every kind of medium, the steps of a map's rays are compared with finer ones.
 TEST(SecondOrder, StepsAreAsAccurateAsStated) {
     for (const Scene& scene : {blob_scene(300), lattice_scene(false), screen_scene(2e-13)}) {
         const double depth = (scene.media[0].get_if<BlobsSpec>() != nullptr) ? 40
@@ -162,7 +162,7 @@ TEST(StatedError, FindsAnErrorThatIsPutIntoAMap) {
     EXPECT_NEAR(shifted.p95, 0.5, 0.03);
 }
 
-// Samples stand for equal parts of the map, near and far, but for what lies beside the edge between.
+// Samples stand for equal parts of the map, near and far. Pixels beside the edge between them are left out.
 TEST(StatedError, SamplesAreSpreadOverDepthAsTheMapIs) {
     std::vector<float> metres(kWindow.area(), 300);
     for (int y = 0; y < kHeight; ++y)
@@ -183,7 +183,7 @@ TEST(StatedError, SamplesAreSpreadOverDepthAsTheMapIs) {
     }
 }
 
-// Edges everywhere: then their pixels must do.
+// If there are edges everywhere, samples are taken beside them.
 TEST(StatedError, EdgesAreSampledWhereThereIsNothingElse) {
     std::vector<float> metres(kWindow.area());
     for (std::size_t i = 0; i < metres.size(); ++i) metres[i] = i % 4 == 0 ? 5 : 300;
@@ -192,7 +192,7 @@ TEST(StatedError, EdgesAreSampledWhereThereIsNothingElse) {
     EXPECT_EQ(choose_samples(kWindow, &plane, uv.data(), kErrorSamples).size(), kErrorSamples);
 }
 
-// A wall that recedes: its pixels are facets to the map, and one surface to the rays that judge.
+// A wall that recedes. Its pixels are facets to the map, and one smooth surface to the rays that judge the map.
 TEST(StatedError, MeetsTheSurfaceBetweenPixels) {
     std::vector<float> metres(kWindow.area());
     for (std::size_t i = 0; i < metres.size(); ++i)
@@ -215,7 +215,7 @@ TEST(StatedError, MeetsTheSurfaceBetweenPixels) {
     EXPECT_EQ(d.y, 0);
 }
 
-// Before a wall with a post in front of it, the ray that judges meets the depth buffer as the map's does.
+// A wall with a post in front of it. The ray that judges meets the depth buffer in the same way as the map's ray.
 TEST(StatedError, MeetsDepthAsTheMapDoes) {
     std::vector<float> metres(kWindow.area(), 40);
     for (int y = 0; y < kHeight; ++y)
@@ -250,7 +250,7 @@ TEST(ChooseModel, TakesTheCheapestWithinTheTolerance) {
         EXPECT_TRUE(!tried.refusal.empty() || none.p95 <= tried.p95) << tried.p95;
 }
 
-// The depth that all frames share is what the choice is made for.
+// The choice is made for the depth that all frames share.
 TEST(ChooseModel, KnowsTheDepthOfTheShot) {
     const Scene scene = screen_scene(4e-13);
     const DisplacerSettings settings = settings_for(5000);
@@ -266,7 +266,7 @@ TEST(ChooseModel, KnowsTheDepthOfTheShot) {
     EXPECT_GT(p95({DepthPlane(kWindow, metres)}), 1.2 * near) << "half of it is far";
 }
 
-// A model's stated figure is what second-order, node by node, says of the whole map.
+// The stated error of a model agrees with that of the whole map, found by second-order at every node.
 TEST(ChooseModel, StatesWhatTheWholeMapIsOffBy) {
     const Scene scene = screen_scene(4e-13);
     StatedError stated;
@@ -290,7 +290,7 @@ Scene surface_scene(double temperature, double dropoff) {
     return scene;
 }
 
-// A surface alone is bent in closed form, and the rays that judge it are as exact.
+// A surface alone is computed in closed form. The rays that judge it must be as exact.
 TEST(StatedError, SayThatALoneSurfaceIsExact) {
     for (const Scene& scene : {surface_scene(270, 3), surface_scene(310, 1)}) {
         StatedError stated;
@@ -303,8 +303,8 @@ TEST(StatedError, SayThatALoneSurfaceIsExact) {
     }
 }
 
-// Where the depth buffer has a hole in the heated ground, rays go on through the plane, which a map ends them on:
-// refracted by n cosθ = const.
+// The depth buffer has a hole in the heated ground. There the judging rays go on through the plane, on which a map ends
+// them. They are refracted by n cosθ = const.
 TEST(StatedError, KnowOfHolesInTheGround) {
     const Scene scene = [] {
         Scene s = surface_scene(330, 0.02);
@@ -334,7 +334,7 @@ TEST(StatedError, KnowOfHolesInTheGround) {
     EXPECT_LT(stated(false), 1e-3);
 }
 
-// What is farther than the background is where its depth says, and media between the two are there.
+// Objects beyond the background are at their own depth, and the media in front of them are complete.
 TEST(StatedError, HoldBeyondFar) {
     struct Case {
         Scene scene;
@@ -367,7 +367,7 @@ TEST(StatedError, HoldBeyondFar) {
     EXPECT_NE(screens.beyond_far(101)[0].find("thin screens"), std::string::npos);
 }
 
-// Blobs aside of the picture are left out, unless pixels are asked for there.
+// Blobs beside the picture are left out, unless pixels are asked for there.
 TEST(MediaLayers, LeaveOutBlobsAside) {
     Scene scene = view();
     BlobsSpec blobs;
@@ -382,7 +382,7 @@ TEST(MediaLayers, LeaveOutBlobsAside) {
     EXPECT_EQ(Displacer(scene, settings).models().size(), 1U);
 }
 
-// A model is taken with the margin to spare, and one that should suffice is known.
+// A model is taken only with the margin, and sufficient_model() finds one that should suffice.
 TEST(ChooseModel, KeepsAMargin) {
     const Scene scene = blob_scene(300);
     const auto one = [](const Displacer&) { return 1.0; };

@@ -101,7 +101,7 @@ TEST(SeenBlobs, HoldWithTheCameraInsideABlobAndBesideOne) {
 }
 
 TEST(SeenBlobs, HoldForASmallBlobFarAwayAndAside) {
-    // single precision of absolute places would be off by a hundredth of σ
+    // Absolute positions in single precision would be off by a hundredth of σ.
     for (const double behind : {0.05, 1.0, 1000.0}) {
         Camera camera = camera_of(Projection::Perspective, 2e6);
         const dvec3 from{300, 200, -1000};
@@ -125,7 +125,7 @@ TEST(SeenBlobs, WhatIsLeftOutStaysBelowTheThreshold) {
     const Camera camera = camera_of(Projection::Perspective, 2000);
     const Comparison c = compare(blobs, camera, 20, 20, {20});
     EXPECT_LT(c.error, kBlobNodeError * c.largest + kNegligibleShift);
-    // and at a strength that leaves next to nothing
+    // The same at a strength at which almost every blob is left out.
     EXPECT_LE(compare(blobs, camera, 20, 20, {20}, 1e-3).error, kNegligibleShift);
 }
 
@@ -136,7 +136,7 @@ TEST(SeenBlobs, TilesWithoutBlobsHaveNoBands) {
     EXPECT_EQ(bends.grids(kTile, kTile, 20, 20).size(), 1U);
     for (const PixelWindow& tile : {PixelWindow{0, 64, 512, 64}, PixelWindow{512, 0, 512, 64}})
         EXPECT_TRUE(bends.grids(tile, tile, 20, 20).empty());
-    // behind the camera, behind every object, without strength
+    // Blobs behind the camera, behind every object, and without strength.
     EXPECT_TRUE(SeenBlobs({{{0.5, 1.5, 8}, 0.02, -3e-4}}, 1, camera, 20, 1).seen().empty());
     EXPECT_TRUE(SeenBlobs({{{0.5, 1.5, -28}, 0.02, -3e-4}}, 1, camera, 20, 1).seen().empty());
     EXPECT_TRUE(SeenBlobs({{{0.5, 1.5, -8}, 0.02, 0}}, 1, camera, 20, 1).seen().empty());
@@ -156,7 +156,7 @@ TEST(SeenBlobs, ExtremesLeaveFiniteNodes) {
                 }
 }
 
-/// What is left out as out of sight never moves a pixel: sources and blobs all round the camera, at many times.
+/// Blobs that are left out as out of sight never move a pixel: sources and blobs all around the camera, at many times.
 TEST(SeenBlobs, WhatIsOutOfSightMovesNothing) {
     constexpr double farthest = 10, strength = 40, negligible = 1e-3;
     const RandomStream stream(3, "homes");

@@ -1,4 +1,4 @@
-/// Movies that are cut off or damaged: every good frame is read, and every other one is named in an error.
+/// Movies that are cut off or damaged. Every good frame is read, and every other frame is named in an error.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 namespace eikonal {
 namespace {
 
-/// What reading to the end yields: numbers of the good frames, and messages of the others.
+/// The result of reading to the end: the numbers of the good frames, and the messages of the others.
 struct Reading {
     std::vector<int> good;
     std::vector<std::string> errors;

@@ -36,7 +36,8 @@ TEST_F(Movie, LosslessFamiliesKeepEveryCode) {
     }
 }
 
-// Packed, semi-planar, palette and big-endian samples come in without loss: compare with ffmpeg's own planes.
+// Packed, semi-planar, palette and big-endian samples are read without loss. They are compared with ffmpeg's own
+// planes.
 TEST_F(Movie, PackedFormatsAreReadExactly) {
     struct Case {
         std::string packed, planar;
@@ -154,7 +155,7 @@ Heard listen(const std::string& samples, double rate) {
     return heard;
 }
 
-// A tone of known pitch, place and length, through every pair of container and codec that is impossible.
+// A tone of known pitch, place and length, through every pair of container and codec that do not go together.
 TEST_F(Movie, AudioThatTheContainerCannotHoldIsCodedAgain) {
     constexpr double kRate = 48000, kFrame = 0.032;  // the longest packet: 1024 samples of AAC at 32 kHz
     struct Case {
@@ -196,7 +197,7 @@ TEST_F(Movie, AudioThatTheContainerCannotHoldIsCodedAgain) {
         pass_through(source, file("again" + c.target));
         EXPECT_TRUE(bytes(file(c.target)) == bytes(file("again" + c.target)));
 
-        // frames 13 to 36: from 0.5 to 1.5 s, the tone's start is cut off
+        // Frames 13 to 36, from 0.5 to 1.5 s. The beginning of the tone is cut off.
         MovieSettings part;
         for (int i = 13; i <= 36; ++i) part.frames.push_back(i);
         pass_through(source, file("part" + c.target), part);

@@ -1,4 +1,4 @@
-/// The resampler against a naive double-precision reference, and its exactness promises bit by bit.
+/// The resampler, compared with a naive double-precision reference; exact cases are compared bit by bit.
 #include "warp/resample/resample.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The public interface of the library, used as a host uses it: from its header alone.
+// The public interface of the library, used from its header alone as a host uses it.
 
 #include <eikonal/eikonal.h>
 #include <gtest/gtest.h>
@@ -107,7 +107,7 @@ TEST(Shimmer, DepthComesAsAMap) {
               "frame 1: 1 of the depth values is negative; depth must be positive");
 }
 
-// Channels move alike, however many there are; alpha is a channel as any.
+// Any number of channels moves alike. Alpha is a channel like the others.
 TEST(Shimmer, ChannelsMoveAlike) {
     const eikonal::Shimmer shimmer(settings());
     const std::vector<float> grey = picture(1), one = warped(shimmer, grey, 1);

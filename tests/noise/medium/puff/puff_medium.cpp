@@ -11,7 +11,7 @@
 namespace eikonal {
 namespace {
 
-/// Where the cloud ends, and the longest step within it, in its size.
+/// Distance at which the cloud ends, and the longest step within it, as multiples of its size.
 constexpr double kReach = 6, kStep = 0.25;
 
 class Instant final : public MediumInstant {

@@ -1,6 +1,5 @@
-/// [[medium]] type = "puff": a kind of medium made as CONTRIBUTING.md tells a stranger to, in one folder and one line.
-/// It is one Gaussian cloud, n - n_ambient = index · exp(-|x - center|²/size²), so that the closed form of blobs judges
-/// it.
+/// [[medium]] type = "puff": a kind of medium added in one folder and one line, as CONTRIBUTING.md describes. It is one
+/// Gaussian cloud, n - n_ambient = index · exp(-|x - center|²/size²). The closed form of blobs can therefore judge it.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -1,4 +1,4 @@
-/// What other media do to the rays of mirages, against rays that are followed through all media together.
+/// The effect of other media on the rays of mirages, compared with rays that are followed through the sum of all media.
 #include "warp/displace/media/surface/mirage_air.h"
 
 #include <gtest/gtest.h>
@@ -94,8 +94,8 @@ TEST(MirageAir, AgreesWithRaysThroughAllMedia) {
     }
 }
 
-// A hot blob spreads what lies behind it, seen in the mirror, too: there the part above the blob is the lower one, and
-// what the plate shows is upside down, so that it moves the same way; and the part to the left stays to the left.
+// A hot blob spreads what lies behind it, also in the mirror. There the part above the blob appears below it, and what
+// the plate shows is upside down, so that it moves the same way. The part to the left stays to the left.
 TEST(MirageAir, TurnsRoundInTheMirror) {
     constexpr double kDistance = 600, kAside = 0.18;  // [m] where a blob bends most
     BlobsSpec blob;

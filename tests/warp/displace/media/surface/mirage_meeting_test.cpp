@@ -1,4 +1,5 @@
-/// Mirages on a picture with a depth buffer: what their rays meet, and what stands in for what is hidden.
+/// Mirages on a picture with a depth buffer: the objects that their rays meet, and what is shown in place of hidden
+/// ones.
 #include "warp/displace/media/surface/mirage_meeting.h"
 
 #include <gtest/gtest.h>
@@ -88,7 +89,7 @@ TEST(MirageMeeting, PlateShowsWhatLiesBehindInverted) {
     }
 }
 
-// A plate's horizon is antialiased: mirrored sky is read clear of it.
+// The horizon of a plate is antialiased. Mirrored sky must not be read from its pixels.
 TEST(MirageMeeting, TheMirrorShowsNoneOfTheHorizon) {
     constexpr float kSky = 1e6F;
     std::vector<float> metres;
