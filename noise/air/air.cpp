@@ -165,7 +165,7 @@ Air::Air(const std::vector<MediumSpec>& media, const OpticsSpec& optics, const A
     for (std::size_t i = 0; i < media.size(); ++i) {
         const MediumSpec& spec = media[i];
         const MediumSetting setting{fmt::format("medium.{}", i), optics, settings.frame, settings.bend_error,
-                                    settings.followed_by_rays,   &budget};
+                                    settings.lattice_splines,    &budget};
         if (spec.has_absolute_index()) {
             if (media.size() > 1)
                 throw UserError(

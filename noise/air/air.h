@@ -90,7 +90,7 @@ struct AirSettings {
     /// Allowed rms change of a ray's direction by interpolation in a lattice after 1 m [m^-1/2] > 0. The change grows
     /// as the root of the length.
     double bend_error = std::numeric_limits<double>::infinity();
-    bool followed_by_rays = true;  ///< as in MediumSetting; at() needs true
+    bool lattice_splines = true;  ///< as in MediumSetting; at() of an air with lattices needs them
 };
 
 class Air {

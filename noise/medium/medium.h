@@ -103,9 +103,9 @@ struct MediumSetting {
     OpticsSpec optics{};
     std::optional<ShotFrame> frame{};                             ///< needed by thin screens (std::logic_error without)
     double bend_error = std::numeric_limits<double>::infinity();  ///< allowed error by interpolation: InterpolationBend
-    /// Whether rays will be followed through instants. If not, what only at() needs is neither made nor counted in the
-    /// budget, and at() may throw std::logic_error.
-    bool followed_by_rays = true;
+    /// Whether a lattice makes the splines that its at() needs. Without them at() of a lattice throws std::logic_error;
+    /// the warp makes its own. Other kinds ignore this.
+    bool lattice_splines = true;
     ShotBudget* budget = nullptr;  ///< not null when build() is called
 };
 

@@ -69,7 +69,7 @@ std::unique_ptr<const Medium> build_medium(const SurfaceSpec& spec, const Medium
 }
 
 std::optional<GroundPlane> mirage_ground(const SurfaceSpec& spec, const OpticsSpec& optics) {
-    if (spec.surface_temperature == optics.ambient_temperature) return {};
+    if (!why_still(spec, optics).empty()) return {};
     return GroundPlane{spec.origin, glm::normalize(spec.normal)};
 }
 

@@ -69,12 +69,12 @@ std::optional<SurfaceSpec> baseline_surface(Integrator integrator, const std::ve
     for (std::size_t i = 0; i < media.size(); ++i)
         if (!(media[i].get_if<SurfaceSpec>() != nullptr) || media.size() > 1)
             throw UserError(fmt::format(
-                "--integrator {}: follows rays through a single medium of type \"surface\", but "
+                "`integrator` {}: follows rays through a single medium of type \"surface\", but "
                 "the scene has {}; remove it or use adaptive",
                 name, media.size() > 1 ? fmt::format("{} media", media.size()) : "medium.0 of another type"));
     if (media.empty())
         throw UserError(
-            fmt::format("--integrator {}: needs a medium of type \"surface\", but the scene has no [[medium]]; "
+            fmt::format("`integrator` {}: needs a medium of type \"surface\", but the scene has no [[medium]]; "
                         "add one or use adaptive",
                         name));
     return (*media.front().get_if<SurfaceSpec>());

@@ -21,10 +21,10 @@
 /// off at 1.2 times that angle, 9 mm off at twice, and 2 µm off at ten times.)
 ///
 /// First order is in closed form over a lone surface (lone_surface.h) and through blobs and thin screens alone
-/// (AirInstant::pull), unless what the closed form leaves out exceeds the tolerance. All other integrals use Simpson's
-/// rule, of order 4 in the step. A step samples F no farther apart than AirInstant::longest_step, and twice as often
-/// where its error is above 1/kStepShare of the tolerance. A given settings.step is taken as it is. error_px is the
-/// error of the integrals only. Nothing beside the straight ray is known.
+/// (AirInstant::straight_bend), unless what the closed form leaves out exceeds the tolerance. All other integrals use
+/// Simpson's rule, of order 4 in the step. A step samples F no farther apart than AirInstant::longest_step, and twice
+/// as often where its error is above 1/kStepShare of the tolerance. A given settings.step is taken as it is. error_px
+/// is the error of the integrals only. Nothing beside the straight ray is known.
 ///
 /// Ends and settings are those of bent_ray.h. `at.p` is the redirected direction. A straight ray that comes to n <= 0
 /// ends there.

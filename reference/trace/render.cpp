@@ -67,7 +67,7 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings)
                                    [](const ObjectSpec& o) { return o.shape == ObjectShape::Quad; });
     if (settings.light_rays > 0 && (!scene_.light || !quads))
         throw UserError(
-            fmt::format("--light-rays {}: there is no {} in the scene; sunlight is followed onto quads under a "
+            fmt::format("`light_rays` {}: there is no {} in the scene; sunlight is followed onto quads under a "
                         "[light]",
                         settings.light_rays, !scene_.light ? "[light]" : "[[object]] of shape quad"));
 }

@@ -37,7 +37,7 @@ FieldSlices make_slices(const FieldOptions& options, const Scene& scene) {
     const std::shared_ptr<const Medium> medium = spec.build({.name = fmt::format("medium.{}", options.medium),
                                                              .optics = scene.optics,
                                                              .frame = frame,
-                                                             .followed_by_rays = false,
+                                                             .lattice_splines = false,
                                                              .budget = &budget});
     return medium->slices(t, {scene.optics.ray_equation, index_law(scene.optics).ambient(), scene.optics.exaggeration});
 }

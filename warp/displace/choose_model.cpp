@@ -98,11 +98,13 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
     const ChoiceDepths depths(scene, settings.far, depth);
     ModelChoice choice{};
     double rms = 0;
+    std::shared_ptr<const Air> air;  // built once for all models
     for (const auto& [name, model] : kModelNames) {
         settings.model = model;
         std::unique_ptr<Displacer> displacer;
         try {
-            displacer = std::make_unique<Displacer>(scene, settings);
+            displacer = std::make_unique<Displacer>(scene, settings, air);
+            air = displacer->air();
         } catch (const UserError& refusal) {
             if (model == kModelNames.back().second && !choice.displacer) throw;
             choice.tried.push_back({model, refusal.what()});
@@ -131,7 +133,7 @@ ModelChoice choose_model(const Scene& scene, DisplacerSettings settings, double 
     if (choice.displacer && (choice.within || choice.exact || choice.p95 <= kHopeless * rms)) return choice;
     choice.within = false;
     settings.model.reset();
-    choice.displacer = std::make_unique<Displacer>(scene, settings);
+    choice.displacer = std::make_unique<Displacer>(scene, settings, air);
     for (const auto& [name, model] : kModelNames)
         if (choice.displacer->models().front() == name) choice.model = model;
     for (const TriedModel& tried : choice.tried)
@@ -144,11 +146,13 @@ std::optional<Model> sufficient_model(const Scene& scene, DisplacerSettings sett
     settings.sample_errors = true;
     const ChoiceDepths depths(scene, settings.far, depth);
     double own = 0;
+    std::shared_ptr<const Air> air;
     for (const auto& [name, other] : kModelNames) {
         if (other < model) continue;
         settings.model = other;
         try {
-            const Displacer displacer(scene, settings);
+            const Displacer displacer(scene, settings, air);
+            air = displacer.air();
             if (displacer.models().empty()) return {};
             const double sampled = sampled_p95(displacer, scene, settings, depths, gain_of(displacer));
             if (other == model)

@@ -50,11 +50,11 @@ struct Displacer::Shot {
     CameraPath path;
     ShotMedia media;
 
-    Shot(const Scene& s, const DisplacerSettings& set)
+    Shot(const Scene& s, const DisplacerSettings& set, std::shared_ptr<const Air> air)
         : scene(s),
           settings(set),
           path(s.camera, set.width, set.height, set.pixel_aspect, set.fov),
-          media(scene, settings, path) {}
+          media(scene, settings, path, std::move(air)) {}
     Shot(const Shot&) = delete;  // media refers to the members before it
 
     double time(double frame) const { return (frame - scene.time.first_frame) / settings.fps; }
@@ -169,8 +169,8 @@ void Displacer::Instant::map(const PixelWindow& window, const DepthSource& depth
     });
 }
 
-Displacer::Displacer(const Scene& scene, const DisplacerSettings& settings)
-    : shot_(std::make_unique<Shot>(scene, settings)) {}
+Displacer::Displacer(const Scene& scene, const DisplacerSettings& settings, std::shared_ptr<const Air> air)
+    : shot_(std::make_unique<Shot>(scene, settings, std::move(air))) {}
 Displacer::~Displacer() = default;
 Displacer::Displacer(Displacer&&) noexcept = default;
 
@@ -238,6 +238,9 @@ std::vector<std::string> Displacer::models() const {
 }
 bool Displacer::mirages() const {
     return !shot_->media.surfaces().empty();
+}
+const std::shared_ptr<const Air>& Displacer::air() const {
+    return shot_->media.air();
 }
 Camera Displacer::camera(double frame) const {
     return shot_->path.at(frame);

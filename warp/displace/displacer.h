@@ -25,10 +25,13 @@
 
 namespace eikonal {
 
+class Air;
+
 class Displacer {
   public:
     /// UserError: media or models that do not apply, lattices that do not fit into memory, a faulty camera path.
-    Displacer(const Scene& scene, const DisplacerSettings& settings);
+    /// air: that of another Displacer of the same scene and settings, whose model may differ; null: it is built.
+    Displacer(const Scene& scene, const DisplacerSettings& settings, std::shared_ptr<const Air> air = {});
     ~Displacer();
     Displacer(Displacer&&) noexcept;
 
@@ -92,6 +95,8 @@ class Displacer {
     bool mirages() const;
 
     Camera camera(double frame) const;
+    /// The media, which displacers of one shot may share.
+    const std::shared_ptr<const Air>& air() const;
 
   private:
     struct Shot;

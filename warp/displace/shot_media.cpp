@@ -50,30 +50,37 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& lines)
 
 }  // namespace
 
-ShotMedia::ShotMedia(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path)
-    : shot_{scene,
-            settings,
-            path,
-            path.reference(),
-            force_strength(scene.optics),
-            {scene.optics.ray_equation, index_law(scene.optics).ambient(), scene.optics.exaggeration}} {
-    const ShotFrame frame =
-        shot_frame(shot_.reference, settings.width, settings.height, scene.optics.aperture, settings.far, settings.fps);
+std::shared_ptr<const Air> build_shot_air(const Scene& scene, const DisplacerSettings& settings,
+                                          const CameraPath& path) {
     for (std::size_t i = 0; i < scene.media.size(); ++i)
         if (scene.media[i].has_absolute_index())
             throw UserError(fmt::format(
                 "medium.{}: a medium of type \"{}\" is there to validate the tracer, which takes it: eikonal-trace "
                 "render; remove it from the scene that you warp with",
                 i, scene.media[i].type()));
-    const Air air(scene.media, scene.optics, {frame, memory_limit(), std::numeric_limits<double>::infinity(), false});
-    air_warnings_ = air.warnings();
-    auto built = air.media().begin();
+    const ShotFrame frame = shot_frame(path.reference(), settings.width, settings.height, scene.optics.aperture,
+                                       settings.far, settings.fps);
+    return std::make_shared<const Air>(
+        scene.media, scene.optics, AirSettings{frame, memory_limit(), std::numeric_limits<double>::infinity(), false});
+}
+
+ShotMedia::ShotMedia(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path,
+                     std::shared_ptr<const Air> air)
+    : shot_{scene,
+            settings,
+            path,
+            path.reference(),
+            force_strength(scene.optics),
+            {scene.optics.ray_equation, index_law(scene.optics).ambient(), scene.optics.exaggeration}},
+      air_(air ? std::move(air) : build_shot_air(scene, settings, path)) {
+    auto built = air_->media().begin();
     for (std::size_t i = 0; i < scene.media.size(); ++i) {
-        if (built != air.media().end() && built->index == i)
+        if (built != air_->media().end() && built->index == i)
             add(i, (built++)->medium);
         else
-            notes_.push_back(fmt::format("medium.{}: {}", i, air.medium_notes()[i]));
+            notes_.push_back(fmt::format("medium.{}: {}", i, air_->medium_notes()[i]));
     }
+    air_warnings_ = air_->warnings();
     check_surfaces(reference_mirages_, surface_names_);
     refuse_other_model();
 }

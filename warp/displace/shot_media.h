@@ -16,13 +16,21 @@
 
 namespace eikonal {
 
+/// The air of a shot for the warp, without the splines of lattices, which the warp makes itself. UserError: what a kind
+/// of medium refuses, and a medium of absolute index.
+std::shared_ptr<const Air> build_shot_air(const Scene& scene, const DisplacerSettings& settings,
+                                          const CameraPath& path);
+
 class ShotMedia {
   public:
     /// UserError: media or models that do not apply, a medium too strong for any map, a camera below a surface.
-    ShotMedia(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path);
+    /// air: of build_shot_air with the same arguments but for the model, or null to build it.
+    ShotMedia(const Scene& scene, const DisplacerSettings& settings, const CameraPath& path,
+              std::shared_ptr<const Air> air = {});
     ShotMedia(const ShotMedia&) = delete;  // the media refer to shot_
 
     const ShotContext& context() const { return shot_; }
+    const std::shared_ptr<const Air>& air() const { return air_; }
     const std::vector<std::unique_ptr<const MediumBend>>& bends() const { return bends_; }
     /// A heated or cooled surface, and its index in Scene::media.
     struct Surface {
@@ -61,6 +69,7 @@ class ShotMedia {
     void refuse_other_model() const;
 
     ShotContext shot_;
+    std::shared_ptr<const Air> air_;
     std::vector<std::unique_ptr<const MediumBend>> bends_;
     std::vector<Surface> surfaces_;
     std::vector<std::string> surface_names_;  ///< for messages

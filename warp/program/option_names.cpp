@@ -7,9 +7,10 @@ namespace eikonal {
 namespace {
 
 /// The settings that occur in messages of the libraries.
-constexpr std::array<std::string_view, 19> kSettings{
-    "codec",  "depth", "depth_meeting", "depth_range", "depth_type", "distance", "far", "fov", "frames",   "gain",
-    "ground", "mask",  "model",         "models",      "preset",     "quality",  "rms", "set", "tolerance"};
+constexpr std::array<std::string_view, 21> kSettings{
+    "codec", "depth",  "depth_meeting", "depth_range", "depth_type", "distance",   "far",
+    "fov",   "frames", "gain",          "ground",      "integrator", "light_rays", "mask",
+    "model", "models", "preset",        "quality",     "rms",        "set",        "tolerance"};
 
 bool is_setting(std::string_view name) {
     return std::find(kSettings.begin(), kSettings.end(), name) != kSettings.end();

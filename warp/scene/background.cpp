@@ -31,15 +31,16 @@ double constant_distance(const Scene& scene, const KnownDepth& known) {
 Background background_of(const Scene& scene, const KnownDepth& known) {
     const PlateSpec& plate = scene.plate;
     const bool constant = known.kind == KnownDepth::Kind::Constant;
-    const std::optional<double> code =
-        known.kind == KnownDepth::Kind::Map ? known.farthest_code : std::optional<double>();
+    const bool code = known.kind == KnownDepth::Kind::Map && known.farthest_code;
     Background b;
     if (known.far)
         b.far = *known.far;
     else if (constant)
         b.far = constant_distance(scene, known);
+    else if (code)
+        b.far = *known.farthest_code;
     else
-        b.far = code.value_or(plate.far.value_or(default_far(scene)));
+        b.far = plate.far.value_or(default_far(scene));
     const bool limited = known.far || code || known.kind != KnownDepth::Kind::Map;
     b.deepest = limited ? b.far : std::max<double>(b.far, kInfiniteDepth);
     b.stated = known.far || code || known.distance || plate.far || plate.distance;

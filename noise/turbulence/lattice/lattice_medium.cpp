@@ -80,7 +80,7 @@ LatticeMedium::LatticeMedium(const TurbulenceSpec& spec, const MediumSetting& se
     field_ = std::make_shared<const LatticeField>(spec, geometry);
     note_ = fmt::format("lattice {} x {} x {} x {}", geometry.size[0], geometry.size[1], geometry.size[2],
                         geometry.size[3]);
-    if (setting.followed_by_rays) make_spline_choice(setting);
+    if (setting.lattice_splines) make_spline_choice(setting);
 }
 
 void LatticeMedium::make_spline_choice(const MediumSetting& setting) {

@@ -88,7 +88,7 @@ TEST(SeenBlobs, AreRightForObjectsBeforeInsideAndBehindTheCloud) {
     for (double z = 4; z < 30; z *= 1.013) depths.push_back(z);
     const Comparison c = compare(blobs, camera_of(Projection::Perspective, 2000), 4, 30, depths);
     EXPECT_GT(c.largest, 0.5);
-    EXPECT_LT(c.error, (kBlobNodeError + kBlobLayerError) * c.largest + kNegligibleShift);
+    EXPECT_LT(c.error, (kBlobNodeError + kBlobDepthError) * c.largest + kNegligibleShift);
 }
 
 TEST(SeenBlobs, HoldWithTheCameraInsideABlobAndBesideOne) {

@@ -120,7 +120,7 @@ DisplacementTables slice_instant(const LatticeField& field, double t, const Path
                                  double strength, int padding) {
     DisplacementTables instant = blank(field, rays, DepthInterpolation::Linear, strength * constant * far);
     SliceTable slice = slice_table(field, t, rays, kCentroid * far, padding);
-    instant.layers.push_back({far, std::move(slice.force), std::nullopt, std::move(slice.index), std::nullopt});
+    instant.tables.push_back({far, std::move(slice.force), std::nullopt, std::move(slice.index), std::nullopt});
     return instant;
 }
 
@@ -128,11 +128,11 @@ DisplacementTables exact_instant(const LatticeField& field, double t, const Path
                                  const std::vector<double>& depths, DepthInterpolation interpolation, double strength,
                                  int padding) {
     DisplacementTables instant = blank(field, rays, interpolation, strength);
-    for (PathTable& table : path_tables(field, t, rays, depths, padding)) {
-        DisplacementTables::Layer layer{table.u, std::move(table.displacement), std::nullopt,
-                                        std::move(table.potential), std::move(table.potential_slope)};
-        if (interpolation == DepthInterpolation::Hermite) layer.slope = std::move(table.slope);
-        instant.layers.push_back(std::move(layer));
+    for (PathTable& path : path_tables(field, t, rays, depths, padding)) {
+        DisplacementTables::Table table{path.u, std::move(path.displacement), std::nullopt, std::move(path.potential),
+                                        std::move(path.potential_slope)};
+        if (interpolation == DepthInterpolation::Hermite) table.slope = std::move(path.slope);
+        instant.tables.push_back(std::move(table));
     }
     return instant;
 }
@@ -141,8 +141,8 @@ DisplacementGrid DisplacementTables::grid(const Camera& camera) const {
     DisplacementGrid grid;
     grid.perspective = camera.projection == Projection::Perspective;
     grid.interpolation = interpolation;
-    for (const Layer& layer : layers) grid.depths.push_back(layer.depth);
-    grid.spacing = node_spacing(cell * camera.f_px / (grid.perspective ? kCentroid * layers.back().depth : 1.0));
+    for (const Table& table : tables) grid.depths.push_back(table.depth);
+    grid.spacing = node_spacing(cell * camera.f_px / (grid.perspective ? kCentroid * tables.back().depth : 1.0));
     return grid;
 }
 
@@ -152,11 +152,11 @@ void DisplacementTables::fill(DisplacementGrid& grid, const Camera& camera) cons
     std::vector<float> x1, slope;
     for (int r = 0; r < grid.rows; ++r) {
         const double py = (grid.row0 + r) * grid.spacing + 0.5;
-        for (std::size_t k = 0; k < layers.size(); ++k) {
-            const Layer& layer = layers[k];
-            LineSampler sampler(*this, table_line(camera, grid, py, layer.depth), grid.columns);
-            sampler.sample(layer.displacement, layer.potential, x1);
-            if (layer.slope) sampler.sample(*layer.slope, layer.potential_slope, slope);
+        for (std::size_t k = 0; k < tables.size(); ++k) {
+            const Table& table = tables[k];
+            LineSampler sampler(*this, table_line(camera, grid, py, table.depth), grid.columns);
+            sampler.sample(table.displacement, table.potential, x1);
+            if (table.slope) sampler.sample(*table.slope, table.potential_slope, slope);
             Node* out = grid.row(r, k);
             for (std::size_t c = 0; c < n; ++c) {
                 const StraightRay ray =
@@ -168,7 +168,7 @@ void DisplacementTables::fill(DisplacementGrid& grid, const Camera& camera) cons
                 };
                 const dvec2 x = shift(x1);
                 // x1 is linear in u there, so the slope beyond the last depth is that of x1 ∝ u
-                const dvec2 s = layer.slope ? shift(slope) : x / layer.depth;
+                const dvec2 s = table.slope ? shift(slope) : x / table.depth;
                 out[c] += Node{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(s.x),
                                static_cast<float>(s.y)};
             }

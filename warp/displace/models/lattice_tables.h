@@ -28,13 +28,13 @@ inline constexpr double kCentroid = 1.0 / 3;
 
 /// Tables of one medium at one instant.
 struct DisplacementTables {
-    struct Layer {
+    struct Table {
         double depth;                                               ///< u [m]
         std::array<PeriodicSpline2, 2> displacement;                ///< x1 [m] along the lateral axes (or c u F)
         std::optional<std::array<PeriodicSpline2, 2>> slope;        ///< dx1/du; Hermite only
         std::optional<PeriodicSpline2> potential, potential_slope;  ///< with falloff only
     };
-    std::vector<Layer> layers;  ///< ascending depth
+    std::vector<Table> tables;  ///< ascending depth
     DepthInterpolation interpolation;
     PathRays rays;
     std::array<double, 2> lateral_period;  ///< [m]

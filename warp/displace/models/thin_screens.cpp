@@ -190,9 +190,9 @@ class AlignedRows {
     void slant() {
         if (grid_.perspective) slant_bends(slope_x_, slope_step(), slope_y_, grid_.columns, uv_.data());
     }
-    void store(int row, std::size_t layer, const SlabLever& lever) {
+    void store(int row, std::size_t depth, const SlabLever& lever) {
         add_bends(uv_.data(), factor_.data(), static_cast<float>(lever.length), static_cast<float>(lever.slope),
-                  static_cast<float>(-camera_.pixel_aspect), grid_.columns, grid_.row(row, layer));
+                  static_cast<float>(-camera_.pixel_aspect), grid_.columns, grid_.row(row, depth));
     }
 
     const ThinScreens& model_;

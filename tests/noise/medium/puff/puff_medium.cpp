@@ -1,3 +1,4 @@
+/// The puff as a medium: its keys, and its index at a point with all derivatives.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -39,7 +39,7 @@ class Planes {
 };
 
 /// nodes = (X, S) of one depth.
-EIKONAL_CLONES void store_layer(const float* __restrict X, const float* __restrict Y, const float* __restrict SX,
+EIKONAL_CLONES void store_depth(const float* __restrict X, const float* __restrict Y, const float* __restrict SX,
                                 const float* __restrict SY, int n, Node* __restrict to) {
     for (int i = 0; i < n; ++i) to[i] = Node{X[i], Y[i], SX[i], SY[i]};
 }
@@ -115,7 +115,7 @@ EIKONAL_CLONES void pass_orthographic(const RowGeometry g, int n, float* __restr
 }
 
 /// nodes += the blob at depth z, which lies within the blob or is seen by a camera near it.
-EIKONAL_CLONES void add_layer(const float* __restrict x, const float* __restrict y, const double* __restrict a,
+EIKONAL_CLONES void add_depth(const float* __restrict x, const float* __restrict y, const double* __restrict a,
                               const double* __restrict length, double z, int n, float* __restrict X,
                               float* __restrict Y, float* __restrict SX, float* __restrict SY) {
     for (int i = 0; i < n; ++i) {
@@ -258,7 +258,7 @@ void BandFiller::add_row(const SeenBlob& b, bool ahead, int j, const NodeRange& 
         double *a = past_.a.data(), *length = past_.length.data();
         if (!passed) (grid_.perspective ? pass_perspective : pass_orthographic)(row, n, x, y, a, length);
         passed = true;
-        add_layer(x, y, a, length, z, n, X, Y, SX, SY);
+        add_depth(x, y, a, length, z, n, X, Y, SX, SY);
         if (behind) return;
     }
 }
@@ -269,7 +269,7 @@ void BandFiller::finish() {
         for (std::size_t k = 0; k < grid_.depths.size(); ++k) {
             Node* nodes = grid_.row(j, k);
             const auto [x, y, sx, sy] = within_.row(j, k, 0);
-            store_layer(x, y, sx, sy, n, nodes);
+            store_depth(x, y, sx, sy, n, nodes);
             if (!goes_on_) continue;
             const auto [X, Y, SX, SY] = behind_.row(j, k, 0);
             if (k > 0) {

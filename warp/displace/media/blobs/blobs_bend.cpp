@@ -105,7 +105,7 @@ class Instant final : public BendInstant {
         grids.push_back(seen_.every_pixel(window, farthest_));
         return scaled(std::move(grids));
     }
-    NodeLayout layout() const override { return {seen_.finest_spacing(), seen_.layers(nearest_, farthest_)}; }
+    NodeLayout layout() const override { return {seen_.finest_spacing(), seen_.depths(nearest_, farthest_)}; }
     std::shared_ptr<const MediumInstant> air(const InstantSettings& settings) const override {
         return BlobsMedium::around(seen_.blobs(), settings);
     }

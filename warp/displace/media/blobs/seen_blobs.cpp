@@ -134,8 +134,8 @@ bool may_be_seen(const std::vector<BlobHome>& homes, double strength, const Came
 
 namespace {
 
-/// At most kMostBlobLayers depths: nearest, farthest, and the others spread evenly over the depths where blobs are.
-std::vector<double> spread_layers(const std::vector<const SeenBlob*>& blobs, double nearest, double farthest) {
+/// At most kMostBlobDepths depths: nearest, farthest, and the others spread evenly over the depths where blobs are.
+std::vector<double> spread_depths(const std::vector<const SeenBlob*>& blobs, double nearest, double farthest) {
     struct Stretch {
         double begin, end;
     };
@@ -151,7 +151,7 @@ std::vector<double> spread_layers(const std::vector<const SeenBlob*>& blobs, dou
         else
             stretches.push_back(s);
     }
-    while (stretches.size() > kMostBlobLayers / 8) {  // join the two stretches with the smallest gap
+    while (stretches.size() > kMostBlobDepths / 8) {  // join the two stretches with the smallest gap
         std::size_t least = 1;
         for (std::size_t i = 2; i < stretches.size(); ++i)
             if (stretches[i].begin - stretches[i - 1].end < stretches[least].begin - stretches[least - 1].end)
@@ -161,7 +161,7 @@ std::vector<double> spread_layers(const std::vector<const SeenBlob*>& blobs, dou
     }
     double length = 0;
     for (const Stretch& s : stretches) length += s.end - s.begin;
-    const auto left = static_cast<double>(kMostBlobLayers - 2 - 2 * static_cast<int>(stretches.size()));
+    const auto left = static_cast<double>(kMostBlobDepths - 2 - 2 * static_cast<int>(stretches.size()));
     std::vector<double> depths{nearest, farthest};
     for (const Stretch& s : stretches) {
         const int steps = 1 + static_cast<int>(left * ((s.end - s.begin) / length));
@@ -173,12 +173,12 @@ std::vector<double> spread_layers(const std::vector<const SeenBlob*>& blobs, dou
 }
 
 /// Depths at which the blobs of a group are computed [m].
-std::vector<double> blob_layers(const std::vector<const SeenBlob*>& blobs, double nearest, double farthest) {
+std::vector<double> blob_depths(const std::vector<const SeenBlob*>& blobs, double nearest, double farthest) {
     if (!(farthest > nearest)) return {nearest};
     const auto spaced = [&](double apart) {
         std::vector<double> depths{nearest};
         double z = nearest;
-        while (z < farthest && depths.size() < kMostBlobLayers) {
+        while (z < farthest && depths.size() < kMostBlobDepths) {
             double step = farthest - z;
             for (const SeenBlob* b : blobs) {
                 const double begin = b->forward - b->reach, end = b->forward + b->reach;
@@ -191,10 +191,10 @@ std::vector<double> blob_layers(const std::vector<const SeenBlob*>& blobs, doubl
         }
         return depths;
     };
-    double apart = kLayerSpacing;
+    double apart = kDepthSpacing;
     for (int i = 0; i < 12; ++i, apart *= 2)
         if (std::vector<double> depths = spaced(apart); depths.back() == farthest) return depths;
-    return spread_layers(blobs, nearest, farthest);
+    return spread_depths(blobs, nearest, farthest);
 }
 
 }  // namespace
@@ -205,10 +205,10 @@ int SeenBlobs::finest_spacing() const {
     return spacing;
 }
 
-std::vector<double> SeenBlobs::layers(double nearest, double farthest) const {
+std::vector<double> SeenBlobs::depths(double nearest, double farthest) const {
     std::vector<const SeenBlob*> all;
     for (const SeenBlob& b : seen_) all.push_back(&b);
-    return blob_layers(all, nearest, farthest);
+    return blob_depths(all, nearest, farthest);
 }
 
 std::vector<DisplacementGrid> SeenBlobs::grids(const PixelWindow& tile, const PixelWindow& cover, double nearest,
@@ -222,7 +222,7 @@ std::vector<DisplacementGrid> SeenBlobs::grids(const PixelWindow& tile, const Pi
         for (const SeenBlob& b : seen_)
             if (b.spacing == spacing && meets(b, camera_, around)) group.push_back(&b);
         if (group.empty()) continue;
-        result.push_back(filled_grid(group, camera_, spacing, blob_layers(group, nearest, farthest), cover));
+        result.push_back(filled_grid(group, camera_, spacing, blob_depths(group, nearest, farthest), cover));
     }
     return result;
 }

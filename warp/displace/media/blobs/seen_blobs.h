@@ -8,8 +8,8 @@
 ///
 /// Cost. It is proportional to the area that blobs cover. Each blob is computed inside its disc only, on nodes that are
 /// at most kNodeSpacing σ apart. A large blob therefore costs no more than a small one. Blobs are grouped by node
-/// spacing: one grid for each group and tile, and none for tiles without blobs. Depths are at most kLayerSpacing σ
-/// apart where blobs are. They are farther apart where there would be more than kMostBlobLayers of them. Between depths
+/// spacing: one grid for each group and tile, and none for tiles without blobs. Depths are at most kDepthSpacing σ
+/// apart where blobs are. They are farther apart where there would be more than kMostBlobDepths of them. Between depths
 /// X is interpolated by a cubic. Behind a blob X is a straight line in z, which the cubic represents exactly.
 ///
 /// What is left out. A disc ends where its blob moves a pixel by less than kNegligibleShift/N, for N blobs. The sum of
@@ -29,11 +29,11 @@ namespace eikonal {
 /// Bound of the error of interpolation between nodes, relative to the blob's largest displacement.
 /// (tests/warp/displace/seen_blobs_test.cpp)
 inline constexpr double kBlobNodeError = 1e-3;
-inline constexpr double kNodeSpacing = 0.35, kLayerSpacing = 0.5;
+inline constexpr double kNodeSpacing = 0.35, kDepthSpacing = 0.5;
 /// Bound of the error of interpolation between depths, relative to the blob's largest displacement. It holds where
-/// kMostBlobLayers suffice.
-inline constexpr double kBlobLayerError = 2e-3;
-inline constexpr int kMostBlobLayers = 64;
+/// kMostBlobDepths suffice.
+inline constexpr double kBlobDepthError = 2e-3;
+inline constexpr int kMostBlobDepths = 64;
 
 /// The blobs of one instant. Immutable, thread-safe.
 class SeenBlobs {
@@ -53,7 +53,7 @@ class SeenBlobs {
     const std::vector<SeenBlob>& seen() const { return seen_; }
     /// Below: the spacing of nodes, and the depths, that suit all blobs.
     int finest_spacing() const;
-    std::vector<double> layers(double nearest, double farthest) const;
+    std::vector<double> depths(double nearest, double farthest) const;
 
   private:
     Camera camera_;
