@@ -44,7 +44,6 @@ class Tracer {
           adaptive_(settings.integrator == Integrator::Adaptive),
           bundle_(bundle),
           recorder_(recorder),
-          geometry_(geometry),
           search_(geometry, chord_deviation(settings), settings.distance) {
         if (bundle) bundles_.emplace();
         if (settings.lone && adaptive_) lone_ = settings.lone.get();
@@ -81,7 +80,6 @@ class Tracer {
     const LoneSurface* lone_ = nullptr;
     Bundle* bundle_;
     const StepRecorder& recorder_;
-    const Geometry* geometry_;
     SurfaceSearch search_;
     RayState state_;
     dvec3 force_{0};
