@@ -55,7 +55,7 @@ SurfaceOptics::SurfaceOptics(const SurfaceSpec& spec, const IndexLaw& law, doubl
       sign(beta < 0 ? -1 : 1),
       log_beta(beta != 0 ? portable::log(std::abs(beta)) : 0) {}
 
-SurfaceRay::SurfaceRay(const SurfaceOptics& optics, double H, double w) : optics_(&optics), H_(H), w_(w) {
+SurfaceRay::SurfaceRay(const SurfaceOptics& optics, double H, double w) : optics_(&optics), w_(w) {
     const double efolds = std::max(H / optics.d0, kLeastEfolds);
     const double e_H = portable::exp(-std::min(efolds, kMostEfolds));
     const double y_H = optics.beta * e_H;

@@ -84,7 +84,7 @@ class SurfaceRay {
     void set_far_end();
 
     const SurfaceOptics* optics_ = nullptr;
-    double H_ = 0, w_ = 0;
+    double w_ = 0;
     bool straight_ = true;  ///< too far above the layer
     bool turns_ = false;    ///< its anchor is a turning point
     double bend_ = 0, bend_slope_ = 0,
