@@ -9,8 +9,8 @@ function(eikonal_medium kind)
   set(EIKONAL_MEDIA ${EIKONAL_MEDIA} ${kind} CACHE INTERNAL "")
 endfunction()
 
-# eikonal_medium_list(TARGET [KIND=HEADER:LIBRARY...]): a library that defines medium_kinds(): every registered kind,
-# and those named besides.
+# eikonal_medium_list(TARGET [FOLDER...]): a library that defines medium_kinds(): every registered kind,
+# and those whose folders are named besides.
 function(eikonal_medium_list target)
   set(includes "")
   set(kinds "")
